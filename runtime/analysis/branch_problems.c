@@ -7,6 +7,7 @@
 
 #include "analysis/finite_difference.h"
 #include "analysis/steady_motion.h"
+#include "numeric/dense.h"
 
 /* ---- States of rest */
 
@@ -292,7 +293,7 @@ static int orbit_spectrum(void *of, Spectrum *s) {
 static int orbit_stands(void *of, const double *u, const double *d) {
   const double most = 1e-3; /* the square of what is left across the motion */
   PeriodicOrbit *o = of;
-  double along = 0, size = 0, all = 0;
+  double along = 0, size = 0;
   if (o->flow.forced || o->led < 0 || place_orbit(o, u)) return 0;
   for (int i = 0; i < o->m * o->n; i++) {
     if (i % o->n == 0 && lag_flow_rates(&o->flow, o->flow.t0, o->y + i, o->x)) return 0;
@@ -300,7 +301,7 @@ static int orbit_stands(void *of, const double *u, const double *d) {
     along += rate * d[i];
     size += rate * rate;
   }
-  for (int i = 0; i < o->cols; i++) all += d[i] * d[i];
+  double all = lag_dot(o->cols, d, d);
   return all - along * along / size < most * all;
 }
 

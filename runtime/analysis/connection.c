@@ -45,14 +45,9 @@ static void at_event(void *context, int k, double t, const double *before, const
 
 /* Cuts of the run from y at time t; `stable` ones go backwards. It may end early, as in a collision. */
 static int run(const Search *s, FlowMap *f, int stable, double t, const double *y, Cuts *c) {
-  const lag_scene *own = f->like->scene;
-  lag_scene scene = *own;
   double along = stable ? -s->time : s->time;
   c->section = s->section, c->n = s->n, c->count = 0, c->t0 = t;
-  scene.t1 = own->t0 + along;
-  f->like->scene = &scene;
-  lag_sim *sim = lag_flow_sim(f, t, y);
-  f->like->scene = own;
+  lag_sim *sim = lag_flow_sim_along(f, t, y, along);
   if (!sim) return LAG_ENOMEM;
   sim->forwards = s->section + 1;
   lag_sim_on_event(sim, at_event, c);

@@ -69,10 +69,8 @@ static void predict(const CostMethod *m, MethodProgress *g) {
  * but luck in rounding. */
 static double front_time(const CostSweep *s, double error) {
   const CostRun *run;
-  double least = HUGE_VAL;
-  for (int i = 0; i < s->n; i++)
-    for (int k = 0; k < s->method[i].nruns; k++) least = fmin(least, s->method[i].run[k].error);
-  return lag_cost_cheapest(s->method, s->n, fmax(error, least), &run) ? run->time : HUGE_VAL;
+  double least = fmax(error, lag_cost_smallest_error(s->method, s->n));
+  return lag_cost_cheapest(s->method, s->n, least, &run) ? run->time : HUGE_VAL;
 }
 
 /* Number of the method whose setting is run next; -1: nothing is left that the time allows. */

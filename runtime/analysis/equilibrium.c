@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "numeric/dense.h"
+#include "numeric/magnitudes.h"
 
 enum { MOST_STEPS = 200, MOST_DESCENT = 200, MOST_TURNS = 32 };
 
@@ -146,17 +147,13 @@ static const lag_var *unknown(const Equilibrium *r, int i) {
   return i < m->nq ? &m->q[i] : &m->z[i - m->nq];
 }
 
-int lag_is_angle(const lag_var *v) {
-  return v->periodic || strcmp(v->unit, "rad") == 0 || strcmp(v->unit, "deg") == 0 || strcmp(v->unit, "rev") == 0;
-}
-
 static void choose_scales(Equilibrium *r) {
   for (int i = 0; i < r->n; i++) {
     const lag_var *v = unknown(r, i);
     double largest = 0;
     for (int j = 0; j < r->n; j++)
       largest = strcmp(unknown(r, j)->unit, v->unit) == 0 ? fmax(largest, fabs(r->start[j])) : largest;
-    r->scale[i] = lag_is_angle(v) ? 1 : largest > 0 ? largest : v->factor;
+    r->scale[i] = lag_is_angle(v->periodic, v->unit) ? 1 : largest > 0 ? largest : v->factor;
   }
 }
 

@@ -47,8 +47,6 @@ int lag_equilibrium_continues(Equilibrium *rest, const double *dx, double c);
  * none. */
 const lag_switch *lag_jump_at(lag_sim *sim, const double *y);
 
-int lag_is_angle(const lag_var *v);
-
 /* y := the state at rest for the unknowns x[n]. */
 void lag_equilibrium_state(Equilibrium *rest, const double *x);
 

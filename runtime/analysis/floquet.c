@@ -103,26 +103,14 @@ static int reduced(Pool *pool, const PeriodicOrbit *o, int s, const Basis *a, co
   for (int i = 0; i < n; i++)
     for (int j = 0; j < k; j++)
       for (int l = 0; l < n; l++) PB[i * k + j] += P[i * n + l] * o->unit[l] / o->unit[i] * a->B[l * k + j];
-  lag_basis_coordinates(b, k, PB, W);
+  lag_multiply_transposed(b->k, n, k, b->B, PB, W);
   return LAG_OK;
-}
-
-static void multiply(int k, const double *A, const double *B, double *AB) {
-  for (int i = 0; i < k; i++)
-    for (int j = 0; j < k; j++) {
-      AB[i * k + j] = 0;
-      for (int l = 0; l < k; l++) AB[i * k + j] += A[i * k + l] * B[l * k + j];
-    }
 }
 
 /* W[k k] := to' W from, with orthogonal matrices; scratch[k k]. */
 static void transform(int k, const double *to, const double *from, double *W, double *scratch) {
-  multiply(k, W, from, scratch);
-  for (int i = 0; i < k; i++)
-    for (int j = 0; j < k; j++) {
-      W[i * k + j] = 0;
-      for (int l = 0; l < k; l++) W[i * k + j] += to[l * k + i] * scratch[l * k + j];
-    }
+  lag_multiply(k, k, k, W, from, scratch);
+  lag_multiply_transposed(k, k, k, to, scratch, W);
 }
 
 /* Q[k k] := a reflection along no axis, so that all directions mix, those of parts that do not act on each other,
@@ -149,7 +137,7 @@ static int separate(Pool *pool, int m, int k, double *W, double *growth) {
     if (round) memcpy(Q, Q + (size_t)m * size, size * sizeof *Q);
     for (int s = 0; s < m; s++) {
       double *to = Q + (size_t)(s + 1) * size;
-      multiply(k, W + (size_t)s * size, to - size, to);
+      lag_multiply(k, k, k, W + (size_t)s * size, to - size, to);
       if (lag_orthonormalise(k, k, to, growth, round >= ROUNDS - COUNTED, 0) ||
           lag_orthonormalise(k, k, to, growth, 0, 0))
         return LAG_ESINGULAR; /* twice: of a singular W */
@@ -170,7 +158,7 @@ static int block_eigenvalues(Pool *pool, PeriodicOrbit *o, int k, const double *
   for (int s = 0; s < o->m; s++) {
     for (int i = 0; i < c; i++)
       for (int j = 0; j < c; j++) D[i * c + j] = W[(s * k + first + i) * k + first + j];
-    multiply(c, D, M, next);
+    lag_multiply(c, c, c, D, M, next);
     memcpy(M, next, size * sizeof *M);
   }
   return o->algebra->general(c, M, o->re + first, o->im + first, v, v + size, v + 2 * size);

@@ -30,6 +30,16 @@ lag_sim *lag_flow_sim(FlowMap *f, double t, const double *y0) {
   return sim;
 }
 
+lag_sim *lag_flow_sim_along(FlowMap *f, double t, const double *y0, double along) {
+  const lag_scene *own = f->like->scene;
+  lag_scene scene = *own;
+  scene.t1 = own->t0 + along;
+  f->like->scene = &scene;
+  lag_sim *sim = lag_flow_sim(f, t, y0);
+  f->like->scene = own;
+  return sim;
+}
+
 /* probe := sim, at its start. */
 static int take_probe(FlowMap *f, lag_sim *sim) {
   lag_sim_free(f->probe);

@@ -35,6 +35,8 @@ int lag_flow_set(FlowMap *f, const char *name, double value);
 
 /* A simulation from y0[n] at time t. NULL: no memory. */
 lag_sim *lag_flow_sim(FlowMap *f, double t, const double *y0);
+/* The same, with an end so much later, or before the start. */
+lag_sim *lag_flow_sim_along(FlowMap *f, double t, const double *y0, double along);
 /* y1[n] := the state a time dt after y0[n] at t; Phi[n n], row-major, unless NULL := its derivative by y0. LAG_OK, or
  * a status with its message; LAG_STOPPED: an event ended the run before. */
 int lag_flow_run(FlowMap *f, double t, double dt, const double *y0, double *y1, double *Phi);

@@ -68,7 +68,7 @@ typedef struct Track {
   double first, last;   /* value at the start, and at the end of the last part */
   double least, most, when_first, when_least, when_most; /* and their times, */
   Happening least_at, most_at; /* which are those of events */
-  double sum, lost;     /* the integral, and its rounding error (Kahan) */
+  double sum, lost;     /* the integral, and what its rounding has lost */
   double size;          /* largest value seen at places of the integral */
   double passage, latest; /* first and last upward passage of 0, */
   Happening passage_at, latest_at; /* over which an event may lead, */

@@ -19,6 +19,7 @@
 
 #include "analysis/measure_nodes.h"
 #include "core/core.h"
+#include "kernels/compensated_sum.h"
 #include "kernels/locate.h"
 #include "numeric/release.h"
 
@@ -313,17 +314,16 @@ double lag_measure_smooth(Measures *m, double a, double reach, double last) {
   return b;
 }
 
-/* Adds the integrals over [a, b]: compensated sums, W. Kahan, Commun. ACM 8 (1965) 40, DOI 10.1145/363707.363723. */
+/* Adds the integrals over [a, b]. */
 static void integrate_part(Measures *m, double a, double b) {
   for (int j = 0, n = lag_measure_places(m); j < n; j++) {
     double weight, t = lag_measure_place(m, j, a, b, &weight);
     take_row(m, t);
     for (Track *k = m->track; k < m->track + m->ntracks; k++) {
       if (k->how != INTEGRATED || !k->active) continue;
-      double x = evaluate(m, k->arg), term = weight * (k->kind == TRACK_RMS ? x * x : x) - k->lost, sum = k->sum + term;
+      double x = evaluate(m, k->arg);
       if (!isfinite(x) && isnan(k->bad)) k->bad = t;
-      k->lost = (sum - k->sum) - term;
-      k->sum = sum;
+      k->sum = lag_compensated_sum(k->sum, weight * (k->kind == TRACK_RMS ? x * x : x), &k->lost);
     }
   }
 }

@@ -344,18 +344,20 @@ static int is_free(ModeSearch *w, const double *x, double most) {
   return far > 0;
 }
 
-/* Whether zero modes that are free one by one are free together, which x^2 y^2 is not along x and y: a few sums are
- * tried, with coefficients in no simple ratio. */
-static int free_together(ModeSearch *w, double *x) {
-  int k = w->nkernel;
-  for (int pattern = 0; pattern < 4 && k > 1; pattern++) {
-    for (int i = 0; i < w->n; i++) {
-      x[i] = 0;
-      for (int j = 0; j < k; j++) {
-        int minus = (pattern & 1 && j & 1) != (pattern & 2 && j & 2);
-        x[i] += w->kernel[i * k + j] * (minus ? -1 : 1) * (0.7 + 0.11 * (j * 3 % 4));
-      }
+void lag_mix_columns(int n, int k, const double *v, int pattern, double *x) {
+  for (int i = 0; i < n; i++) {
+    x[i] = 0;
+    for (int j = 0; j < k; j++) {
+      int minus = (pattern & 1 && j & 1) != (pattern & 2 && j & 2);
+      x[i] += v[i * k + j] * (minus ? -1 : 1) * (0.7 + 0.11 * (j * 3 % 4));
     }
+  }
+}
+
+/* Whether zero modes that are free one by one are free together, which x^2 y^2 is not along x and y. */
+static int free_together(ModeSearch *w, double *x) {
+  for (int pattern = 0; pattern < LAG_MIXTURES && w->nkernel > 1; pattern++) {
+    lag_mix_columns(w->n, w->nkernel, w->kernel, pattern, x);
     if (!is_free(w, x, 0.1)) return 0;
   }
   return 1;
@@ -408,13 +410,6 @@ static int is_second_half(const ModeSearch *w, const Spectrum *s, int k) {
   return s->im[k] < 0 || (w->out->pairs && s->re[k] < 0);
 }
 
-/* Whether k is the first of equal defective eigenvalues, which are listed as one mode. */
-static int is_first(const Spectrum *s, int k) {
-  for (int i = 0; i < k && s->repeats[k] > 1; i++)
-    if (s->re[i] == s->re[k] && s->im[i] == s->im[k]) return 0;
-  return 1;
-}
-
 static int modes_of_matrix(ModeSearch *w) {
   Pool *pool = &w->out->pool;
   Spectrum s;
@@ -436,7 +431,7 @@ static int modes_of_matrix(ModeSearch *w) {
       re[i] = s.vre[place(w, i) * s.n + k];
       im[i] = s.vim[place(w, i) * s.n + k];
     }
-    rc = is_second_half(w, &s, k) || !is_first(&s, k) ? LAG_OK : add_mode(w, mode, re, im, 1);
+    rc = is_second_half(w, &s, k) || !lag_spectrum_first(&s, k) ? LAG_OK : add_mode(w, mode, re, im, 1);
   }
   rc = pool->failed ? LAG_ENOMEM : rc;
   return rc || w->nkernel == 0 ? rc : add_zero_modes(w);

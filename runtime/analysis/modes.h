@@ -58,3 +58,8 @@ void lag_modes_sort(Modes *modes);
 /* Columns v[n * k] := a basis of the same space with as many zeros as possible: Gauss-Jordan elimination, components
  * measured in scale[n]. */
 void lag_reduce_columns(int n, int k, const double *scale, double *v);
+
+/* x[n] := a sum of the columns v[n * k] with coefficients in no simple ratio, their signs by pattern: what holds for
+ * each column and all mixtures holds for all sums. */
+enum { LAG_MIXTURES = 4 };
+void lag_mix_columns(int n, int k, const double *v, int pattern, double *x);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "analysis/periodic_orbit.h"
+#include "numeric/dense.h"
 
 /* E[size * size] := exp(c G), by scaling and squaring of its series: G. H. Golub, C. F. Van Loan, Matrix Computations,
  * 4th ed. (2013), 9.3. scratch[2 * size * size]. */
@@ -17,12 +18,8 @@ static void matrix_exponential(int size, const double *G, double c, double *E, d
   for (int e = 0; e < size * size; e++) E[e] = term[e] = e % (size + 1) == 0;
   for (int k = 1; k <= 24 + halvings; k++) {
     const double *left = k <= 24 ? term : E, *right = k <= 24 ? G : E;
-    for (int i = 0; i < size; i++)
-      for (int j = 0; j < size; j++) {
-        double sum = 0;
-        for (int l = 0; l < size; l++) sum += left[i * size + l] * right[l * size + j];
-        next[i * size + j] = k <= 24 ? sum * part / k : sum;
-      }
+    lag_multiply(size, size, size, left, right, next);
+    for (int i = 0; i < size * size && k <= 24; i++) next[i] = next[i] * part / k;
     memcpy(k <= 24 ? term : E, next, (size_t)(size * size) * sizeof *E);
     for (int e = 0; e < size * size && k <= 24; e++) E[e] += term[e];
   }

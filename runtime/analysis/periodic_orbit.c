@@ -289,14 +289,12 @@ static int charge_row(PeriodicOrbit *o, int k, double *w) {
 
 /* Makes w[all] orthogonal to the `before` rows at W, and of unit length; 0: nothing is left. */
 static int orthogonal_unit(int all, int before, const double *W, double *w) {
-  double size = 0, left = 0;
-  for (int i = 0; i < all; i++) size += w[i] * w[i];
+  double size = lag_dot(all, w, w);
   for (int k = 0; k < before; k++) {
-    double part = 0;
-    for (int i = 0; i < all; i++) part += W[k * all + i] * w[i];
+    double part = lag_dot(all, W + k * all, w);
     for (int i = 0; i < all; i++) w[i] -= part * W[k * all + i];
   }
-  for (int i = 0; i < all; i++) left += w[i] * w[i];
+  double left = lag_dot(all, w, w);
   if (!(left > 1e-16 * size)) return 0;
   for (int i = 0; i < all; i++) w[i] /= sqrt(left);
   return 1;

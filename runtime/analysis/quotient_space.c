@@ -2,41 +2,34 @@
 #include "analysis/quotient_space.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "lag.h"
+#include "numeric/dense.h"
 #include "numeric/singular_values.h"
 
-/* The columns of C[n * c] in the coordinates of the basis := X[k * c]. */
-void lag_basis_coordinates(const Basis *b, int c, const double *C, double *X) {
-  for (int i = 0; i < b->k; i++)
-    for (int j = 0; j < c; j++) {
-      double sum = 0;
-      for (int r = 0; r < b->n; r++) sum += b->B[r * b->k + i] * C[r * c + j];
-      X[i * c + j] = sum;
-    }
+/* B[n k] := those combinations of its columns, k - rank in number, along which none of R[rows k] changes: singular
+ * values below `least` count as 0. R is destroyed. Returns the number that is left, or LAG_ENOMEM. */
+static int drop(Pool *pool, int rows, int k, double *R, int n, double *B) {
+  const double least = 1e-7;
+  int rank = 0;
+  double *V = lag_pool_doubles(pool, (size_t)(k * k) + 1), *sigma = lag_pool_doubles(pool, (size_t)k + 1),
+         *BV = lag_pool_doubles(pool, (size_t)(n * k) + 1);
+  if (pool->failed) return LAG_ENOMEM;
+  lag_singular_values(rows, k, R, V, sigma);
+  while (rank < k && sigma[rank] > least) rank++;
+  lag_multiply(n, k, k, B, V, BV);
+  for (int i = 0; i < n * (k - rank); i++) B[i] = BV[i / (k - rank) * k + rank + i % (k - rank)];
+  return k - rank;
 }
 
-/* The basis := its part orthogonal to the columns of C[n * c]. Singular values below `least` of the largest count as
- * 0. */
+/* The basis := its part orthogonal to the columns of C[n * c]. */
 int lag_basis_take_out(Pool *pool, Basis *b, int c, const double *C) {
-  const double least = 1e-7;
-  int k = b->k, rank = 0;
-  double *X = lag_pool_doubles(pool, (size_t)(k * c) + 1), *R = lag_pool_doubles(pool, (size_t)(k * c) + 1);
-  double *V = lag_pool_doubles(pool, (size_t)(k * k) + 1), *sigma = lag_pool_doubles(pool, (size_t)k + 1),
-         *left = lag_pool_doubles(pool, (size_t)(b->n * k) + 1);
+  double *R = lag_pool_doubles(pool, (size_t)(b->k * c) + 1);
   if (pool->failed) return LAG_ENOMEM;
-  lag_basis_coordinates(b, c, C, X);
-  for (int i = 0; i < k; i++)
-    for (int j = 0; j < c; j++) R[j * k + i] = X[i * c + j];
-  lag_singular_values(c, k, R, V, sigma);
-  while (rank < k && sigma[rank] > least) rank++;
-  for (int r = 0; r < b->n; r++)
-    for (int j = rank; j < k; j++)
-      for (int i = 0; i < k; i++) left[r * (k - rank) + j - rank] += b->B[r * k + i] * V[i * k + j];
-  b->B = left;
-  b->k = k - rank;
-  return LAG_OK;
+  lag_multiply_transposed(c, b->n, b->k, C, b->B, R);
+  int left = drop(pool, c, b->k, R, b->n, b->B);
+  if (left >= 0) b->k = left;
+  return left < 0 ? left : LAG_OK;
 }
 
 /* Scales the columns of C[n * c] to unit length; those that vanish stay. */
@@ -50,21 +43,10 @@ void lag_normalise_columns(int n, int c, double *C) {
 
 /* C[n *nr] := those combinations of its columns along which no charge of L[n c] changes. */
 int lag_within_levels(Pool *pool, int n, int c, const double *L, int *nr, double *C) {
-  int k = *nr, rank = 0;
-  double *X = lag_pool_doubles(pool, (size_t)(c * k) + 1), *V = lag_pool_doubles(pool, (size_t)(k * k) + 1),
-         *sigma = lag_pool_doubles(pool, (size_t)k + 1), *was = lag_pool_doubles(pool, (size_t)(n * k) + 1);
+  double *X = lag_pool_doubles(pool, (size_t)(c * *nr) + 1);
   if (pool->failed) return LAG_ENOMEM;
-  for (int i = 0; i < c; i++)
-    for (int j = 0; j < k; j++)
-      for (int r = 0; r < n; r++) X[i * k + j] += L[r * c + i] * C[r * k + j];
-  lag_singular_values(c, k, X, V, sigma);
-  while (rank < k && sigma[rank] > 1e-7) rank++;
-  memcpy(was, C, (size_t)(n * k) * sizeof *C);
-  for (int r = 0; r < n; r++)
-    for (int j = rank; j < k; j++) {
-      C[r * (k - rank) + j - rank] = 0;
-      for (int i = 0; i < k; i++) C[r * (k - rank) + j - rank] += was[r * k + i] * V[i * k + j];
-    }
-  *nr = k - rank;
-  return LAG_OK;
+  lag_multiply_transposed(c, n, *nr, L, C, X);
+  int left = drop(pool, c, *nr, X, n, C);
+  if (left >= 0) *nr = left;
+  return left < 0 ? left : LAG_OK;
 }

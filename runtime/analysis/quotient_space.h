@@ -10,8 +10,6 @@ typedef struct Basis {
   double *B;
 } Basis;
 
-/* The columns of C[n * c] in the coordinates of the basis := X[k * c]. */
-void lag_basis_coordinates(const Basis *b, int c, const double *C, double *X);
 /* The basis := its part orthogonal to the columns of C[n * c]. LAG_OK, or LAG_ENOMEM. */
 int lag_basis_take_out(Pool *pool, Basis *b, int c, const double *C);
 /* Scales the columns of C[n * c] to unit length; those that vanish stay. */

@@ -130,3 +130,9 @@ int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, dou
   }
   return LAG_OK;
 }
+
+int lag_spectrum_first(const Spectrum *s, int k) {
+  for (int i = 0; i < k && s->repeats[k] > 1; i++)
+    if (s->re[i] == s->re[k] && s->im[i] == s->im[k]) return 0;
+  return 1;
+}

@@ -19,3 +19,6 @@ typedef struct Spectrum {
 /* Spectrum of A[n * n], whose entries have errors up to noise[n * n] >= 0, at least those of rounding. Both are
  * destroyed. Memory is the pool's. LAG_OK, LAG_ENOMEM, LAG_EMETHOD. */
 int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, double *A, double *noise);
+
+/* Whether eigenvalue k is the first of equal defective ones, which are listed as one mode. */
+int lag_spectrum_first(const Spectrum *s, int k);

@@ -8,6 +8,7 @@
 
 #include "analysis/finite_difference.h"
 #include "analysis/quotient_space.h"
+#include "numeric/dense.h"
 
 /* ---- Equations */
 
@@ -191,7 +192,7 @@ static int spectrum(void *of, Spectrum *p) {
         double a = m->G[i * s->n + l] - s->DX[i * s->n + l];
         A[i * b.k + j] += a * m->unit[l] / m->unit[i] * b.B[l * b.k + j];
       }
-  if (rc == LAG_OK) lag_basis_coordinates(&b, b.k, A, W);
+  if (rc == LAG_OK) lag_multiply_transposed(b.k, s->n, b.k, b.B, A, W);
   p->n = rc ? 0 : b.k;
   rc = rc || !p->n ? rc : s->algebra->general(b.k, W, p->re, p->im, v, v + n * n, v + 2 * n * n);
   lag_pool_free(&pool);

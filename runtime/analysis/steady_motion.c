@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "numeric/dense.h"
+#include "numeric/magnitudes.h"
 
 enum { LEVELS = 10, MOST_STEPS = 60, MOST_PLANES = 24, SAMPLES = 4, DESCENT = 2000 };
 
@@ -457,7 +458,7 @@ static void choose_units(SteadyMotion *s, Equilibrium *rest) {
     for (int i = 0; i < s->nq; i++) {
       double most = 0;
       for (int j = 0; j < s->nq; j++) most = of_one_unit(m, i, j) ? fmax(most, fabs(s->y[part * s->nq + j])) : most;
-      s->unit[part * s->nq + i] = !part && lag_is_angle(&m->q[i]) ? 1
+      s->unit[part * s->nq + i] = !part && lag_is_angle(m->q[i].periodic, m->q[i].unit) ? 1
                                   : most > 0                      ? most
                                   : part                          ? rate * s->unit[i]
                                                                   : m->q[i].factor;

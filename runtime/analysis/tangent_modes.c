@@ -176,18 +176,14 @@ static int add_zeros(TangentModes *w, int k, double *v, int free) {
   return rc;
 }
 
-/* Whether all zeros that are left, columns of u[n * k], lead to other steady motions, one by one and in sums with
- * coefficients in no simple ratio: only then nonlinear terms do not decide. */
+/* Whether all zeros that are left, columns of u[n * k], lead to other steady motions, one by one and in sums: only
+ * then nonlinear terms do not decide. */
 static int is_family(TangentModes *w, int k, const double *u) {
   int n = w->s->n, family = w->spectrum.zeros == k;
   double *x = lag_pool_doubles(&w->out->pool, (size_t)n);
-  for (int try = 0; try < k + (k > 1 ? 4 : 0) && x && family; try++) {
-    for (int i = 0; i < n; i++) {
-      x[i] = 0;
-      for (int j = 0; j < k; j++)
-        x[i] += try < k ? u[i * k + j] * (try == j)
-                        : u[i * k + j] * ((try - k) >> j % 2 & 1 ? -1 : 1) * (0.7 + 0.11 * (j * 3 % 4));
-    }
+  for (int try = 0; try < k + (k > 1 ? LAG_MIXTURES : 0) && x && family; try++) {
+    if (try >= k) lag_mix_columns(n, k, u, try - k, x);
+    for (int i = 0; i < n && try < k; i++) x[i] = u[i * k + try];
     family = lag_steady_continues(w->s, x, 0.05) && lag_steady_continues(w->s, x, -0.05);
   }
   return x && family;
@@ -218,9 +214,7 @@ static int add_modes(TangentModes *w) {
   double *re = lag_pool_doubles(&w->out->pool, 2 * (size_t)n), *im = re + n;
   if (!re) return LAG_ENOMEM;
   for (int k = 0; k < s->count && rc == LAG_OK; k++) {
-    int second = s->im[k] < 0, same = 0;
-    for (int i = 0; i < k; i++) same |= s->repeats[k] > 1 && s->re[i] == s->re[k] && s->im[i] == s->im[k];
-    if (second || same) continue;
+    if (s->im[k] < 0 || !lag_spectrum_first(s, k)) continue;
     rc = lift(w, &(Eigenvector){s->re[k], s->im[k], s->vre, s->vim, k}, re);
     rc = rc ? rc : add_mode(w, (Mode){.re = s->re[k], .im = s->im[k], .repeats = (int)s->repeats[k]}, re, im);
   }

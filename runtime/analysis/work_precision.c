@@ -381,6 +381,13 @@ static const CostMethod *find_cheapest(const CostMethod *m, int n, double target
   return which;
 }
 
+double lag_cost_smallest_error(const CostMethod *m, int n) {
+  double least = HUGE_VAL;
+  for (int i = 0; i < n; i++)
+    for (int k = 0; k < m[i].nruns; k++) least = fmin(least, m[i].run[k].error);
+  return least;
+}
+
 const CostMethod *lag_cost_cheapest(const CostMethod *m, int n, double target, const CostRun **run) {
   return find_cheapest(m, n, target, 0, run);
 }

@@ -119,6 +119,9 @@ int lag_previous_alike(const lag_sim *sim, int i);
 /* Marks the Pareto front of all runs. */
 void lag_pareto_front(CostMethod *m, int n);
 
+/* Of all runs; HUGE_VAL: there is none. */
+double lag_cost_smallest_error(const CostMethod *m, int n);
+
 /* The method of the fastest run with an error of at most `target`, and *run; NULL: there is none. lag_cost_answer:
  * of those that are not `stopped`. */
 const CostMethod *lag_cost_cheapest(const CostMethod *m, int n, double target, const CostRun **run);

@@ -14,15 +14,11 @@ enum { MOST_TRIALS = 10 };
 /* Method with tolerance or step of the next trial. */
 static int set_knob(App *app, double knob) {
   lag_sim *s = app->sim;
-  lag_option opt[MOST_OPTIONS];
   if (!(lag_equal_step(s) > 0)) {
     int rc = lag_sim_set_tolerance(s, knob);
     return rc || app->args.method ? rc : lag_app_choose_automatically(app, NULL, 0);
   }
-  lag_app_options(s->method, s->options, 1, opt);
-  for (int i = 0; i < s->method->noptions; i++)
-    if (strcmp(opt[i].name, "step") == 0) opt[i].value = knob;
-  return lag_sim_set_method(s, s->method, opt, s->method->noptions);
+  return lag_app_set_option(s, "step", knob);
 }
 
 typedef struct Trial {

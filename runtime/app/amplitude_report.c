@@ -148,22 +148,16 @@ void lag_app_put_amplitudes(FILE *f, const lag_model *m, const Modes *modes, int
 static void json_matrix(Json *j, const char *name, const lag_model *m, const Modes *modes, const Amplitudes *a,
                         int by_action) {
   const Couplings *c = &a->couplings;
-  lag_json_begin(j, name, '[');
-  for (int i = 0; i < c->n; i++) {
-    lag_json_begin(j, NULL, '[');
-    for (int k = 0; k < c->n; k++)
+  JSON_EACH(j, name, '[', i, c->n) {
+    JSON_EACH(j, NULL, '[', k, c->n)
       lag_json_number(j, NULL, c->pair[i][k].shift * shift_unit(m, modes, a, i, k, by_action));
-    lag_json_end(j, ']');
   }
-  lag_json_end(j, ']');
 }
 
 void lag_app_json_couplings(Json *j, const lag_model *m, const Modes *modes, const Amplitudes *a) {
   const Couplings *c = &a->couplings;
   lag_json_begin(j, "shifts", '{');
-  lag_json_begin(j, "of_modes", '[');
-  for (int i = 0; i < c->n; i++) lag_json_count(j, NULL, c->mode[i] + 1);
-  lag_json_end(j, ']');
+  JSON_EACH(j, "of_modes", '[', i, c->n) lag_json_count(j, NULL, c->mode[i] + 1);
   json_matrix(j, "by_amplitude", m, modes, a, 0);
   if (has_actions(c)) json_matrix(j, "by_action", m, modes, a, 1);
   lag_json_end(j, '}');

@@ -11,22 +11,24 @@
 enum { EXIT_FINE = 0, EXIT_USAGE = 2, EXIT_RUN = 3, EXIT_SIGNAL = 128 };
 enum { MOST_OPTIONS = 16 };
 
-#include "app/options.def"
-
 /* The command line as text; numbers are not parsed yet. Lists are in order, with their number; NULL: none. */
 typedef struct Args {
 #define OWN_FLAG(f) int f;
 #define OWN_TEXT(f) const char *f;
 #define OWN_LIST(f) const char **f; int n##f;
+#define PICTURE_FLAG TO
+#define PICTURE_TEXT TO
 #define TO(f)
 #define LAGC(...)
 #define BOTH(name, brief, value, takes, hint, commands, analyses, field, text) field
 #define SIMULATOR(name, value, takes, analyses, field, text) field
 #include "app/options.def"
+  PictureOptions picture;
   const char *self, *scene, *plot_y; /* this program; the first of the scenes and of plot_ys */
   char **sets; /* name=value, in order */
   const char **scenes; /* all scenes named */
   int nsets, nscenes, argc;
+  unsigned analysis; /* RUN, or the analysis that is asked for */
   char **argv; /* as main gets them */
 } Args;
 
@@ -137,6 +139,8 @@ static inline int lag_args_tangents(const Args *a) { return a->lyapunov || a->or
 
 /* Row i; NULL past the end. */
 const Option *lag_args_option(int i);
+/* The analysis that an option begins; 0: none. */
+unsigned lag_args_analysis_named(const char *option);
 
 /* args.c: parses and checks the command line. 0, or EXIT_USAGE after a message. */
 int lag_args_parse(Args *a, int argc, char **argv);
@@ -147,6 +151,12 @@ int lag_args_decimal(const char *text, double *x);
 int lag_args_number(const Args *a, const char *what, const char *text, const char *example, double *x);
 /* x := the whole number of an option, from 1 on. 0, or EXIT_USAGE after a message. */
 int lag_args_count(const Args *a, const char *option, const char *text, const char *example, long long *x);
+/* x := the positive number of an option, whose meaning the message states; unchanged where text is NULL. 0, or
+ * EXIT_USAGE after a message. */
+int lag_args_positive(const Args *a, const char *option, const char *text, const char *example, const char *meaning,
+                      double *x);
+/* every := the time between rows that --every gives, if it does. 0, or EXIT_USAGE after a message. */
+int lag_args_every(const Args *a, double *every);
 /* Prints an error to standard error after the program's name; returns EXIT_USAGE. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))
@@ -154,8 +164,11 @@ __attribute__((format(printf, 2, 3)))
 int lag_app_error(const Args *a, const char *format, ...);
 /* The same where an analysis has no result: EXIT_RUN. */
 #define lag_app_no_result(...) (lag_app_error(__VA_ARGS__), EXIT_RUN)
-/* Refuses a span without length; returns EXIT_USAGE. */
+/* Refuse a span without length, and a program without GSL, which "finds eigenvalues"; return EXIT_USAGE. */
 int lag_app_no_span(const App *app);
+int lag_app_no_gsl(const App *app, const char *does);
+/* Another run of the same program and command line, not set up. */
+App lag_app_like(const App *app);
 
 /* simulation_setup.c: app->scene and app->sim with values and method; lag_app_set_up_start: without the method. 0,
  * or EXIT_USAGE after a message. */
@@ -189,12 +202,13 @@ int lag_app_choose_automatically(App *app, const lag_option *opt, int n);
 void lag_app_help(const App *app, FILE *f);
 void lag_app_list_methods(const App *app, const char *name, FILE *f);
 
-/* pictures.c: writes a picture to path by `write`, which makes an SVG file (-1 with errno set); of a path that ends
- * in .png that becomes a PNG. lag_app_draw_table: the table to --svg, if given. 0, or EXIT_USAGE after a message.
+/* pictures.c: writes a picture to path, SVG or, where it ends in .png, PNG: `write` puts all but the last tag into p->f
+ * (-1 with errno set). lag_app_draw_table: the table to --svg, if given. 0, or EXIT_USAGE after a message.
  * lag_app_check_parts: refuses files that only a program built with librsvg or libhdf5 writes. */
 int lag_app_check_parts(const App *app);
-int lag_app_picture(const App *app, const char *path, int (*write)(const char *svg, void *context), void *context);
-int lag_app_draw_table(const App *app, const char *title);
+int lag_app_picture(const App *app, const char *path, const char *title, int (*write)(const Picture *p, void *context),
+                    void *context);
+int lag_app_draw_table(App *app, const char *title);
 
 /* column_lookup.c: app->drawn := columns of --plot-x and --plot-y, or all. 0, or EXIT_USAGE after a message. */
 int lag_app_choose_curves(App *app);
@@ -227,6 +241,8 @@ int lag_portrait_open(App *app);
  * failure. */
 int lag_app_put_row(App *app);
 int lag_app_write_row(App *app, int drawn);
+/* All rows of a table to a file; 0, or EXIT_USAGE after a message. */
+int lag_app_write_table(const App *app, const char *path, const Table *t);
 /* Signals that end a run (Ctrl-C, SIGTERM, SIGHUP) let it finish its step and write its files; nohup is respected.
  * Called before files are opened, so that none is left over. */
 void lag_app_catch_interrupt(void);
@@ -248,8 +264,10 @@ void lag_app_free(App *app);
 /* multi_run_plot.c: whether the command line names several scenes or methods, or --vs, for one picture; draws it and
  * returns the exit status. */
 int lag_app_overlays(const Args *a);
-/* Length of the first method in a list with commas; those between the parentheses of options separate none. */
+/* Length of the first method in a list with commas; those between the parentheses of options separate none.
+ * lag_app_next_method: the one behind it; NULL: none. */
 size_t lag_app_method_length(const char *list);
+const char *lag_app_next_method(const char *list);
 int lag_app_overlay(App *app);
 
 /* area_plot.c: --cloud. Returns the exit status. */
@@ -318,6 +336,8 @@ void lag_report_gradient_json(App *app, Json *j);
  * end: after it. */
 int lag_app_error_begin(App *app);
 void lag_app_error_end(App *app);
+/* An option of the method of `sim`, where it has it; others stay. LAG_OK, or a refusal. */
+int lag_app_set_option(lag_sim *sim, const char *name, double value);
 /* `to` takes the method and options of `from`, and its tolerance times `times`. LAG_OK, or a refusal. */
 int lag_app_copy_method(const lag_sim *from, lag_sim *to, double times);
 /* Compares the motion noted in *e, of `run`, with a more accurate run of at most `most` operations. LAG_OK, also
@@ -353,6 +373,8 @@ int lag_app_orbit_set_up(App *app);
 int lag_app_orbit_holds(App *app, struct PeriodicOrbit *o); /* its conditions, those of --hold */
 int lag_app_orbit_open(App *app, struct PeriodicOrbit *o);
 int lag_app_orbit_solve(App *app, struct PeriodicOrbit *o);
+/* The rest of a scene to paste: values of the command line that are no starts, the start y[n], the span. */
+void lag_app_put_start(FILE *f, const App *app, const double *y, double span);
 /* orbit_manifolds.c: --manifold, of the orbit, or with --equilibrium of the rest next to the start. 0, or the exit
  * status. */
 int lag_app_manifolds(App *app, struct PeriodicOrbit *o);
@@ -424,7 +446,10 @@ void lag_report_json(App *app, FILE *f);
 /* The word behind a charge's name: "energy drift", "spin balance". */
 const char *lag_charge_word(const lag_charge_stats *charge);
 extern const char lag_energy_scale[]; /* what drifts and balances of the energy are relative to */
-/* Members model, scene, method, chosen, status. */
-void lag_report_json_head(const App *app, Json *j);
+/* A JSON object that begins with model and scene; of a run also with method, chosen and status. */
+Json lag_app_json(const App *app, FILE *f);
+Json lag_report_json_open(const App *app, FILE *f);
 /* s[n] := method with the options that differ from their defaults, "rk45(tol=1e-09)". */
 void lag_report_method(const App *app, char *s, size_t n);
+/* The first line of reports: model, scene and method. */
+void lag_report_head(const App *app, FILE *f);

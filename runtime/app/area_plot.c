@@ -54,10 +54,9 @@ static int read_size(Cloud *c) {
   if (lag_args_count(a, "--cloud", number, "--cloud 60", &n)) return EXIT_USAGE;
   if (n < LEAST_STARTS || n > MOST_STARTS)
     return lag_app_error(a, "--cloud %s: from %d to %d starts", a->cloud, LEAST_STARTS, MOST_STARTS);
-  if (colon && (!lag_args_number(a, "--cloud", colon + 1, "--cloud 60:0.1", &c->part) || !(c->part > 0)))
-    return lag_app_error(
-        a, "--cloud %s: after the colon stands the size of the cloud, as a part of the motion's, for example 60:0.1",
-        a->cloud);
+  if (lag_args_positive(a, "--cloud", colon ? colon + 1 : NULL, "--cloud 60:0.1",
+                        "after the colon stands the size of the cloud, as a part of the motion's", &c->part))
+    return EXIT_USAGE;
   c->asked = c->n = (int)n;
   return 0;
 }
@@ -66,10 +65,8 @@ static int read_times(Cloud *c) {
   const Args *a = &c->app->args;
   c->until = c->run.until;
   c->every = (c->until - c->run.scene->t0) / (TIMES - 1);
-  if (a->every && !lag_args_number(a, "--every", a->every, "--every 1", &c->every)) return EXIT_USAGE;
-  if (a->every && !(c->every > 0))
-    return lag_app_error(a, "--every %s: the time between two clouds must be positive, for example --every 1",
-                         a->every);
+  if (lag_args_positive(a, "--every", a->every, "--every 1", "the time between two clouds must be positive", &c->every))
+    return EXIT_USAGE;
   c->every = copysign(c->every, c->until - c->run.scene->t0);
   double times = floor(lag_app_row_at(&c->run, (double[]){c->run.scene->t0, fabs(c->every)}, c->until)) + 1;
   if (times > MOST_TIMES)
@@ -83,7 +80,7 @@ static int read_times(Cloud *c) {
 /* Sets up the simulation of a method, and finds the drawn columns. */
 static int set_up(Cloud *c, const char *method) {
   App *run = &c->run;
-  *run = (App){.program = c->app->program, .extras = c->app->extras, .args = c->app->args, .last_row = NAN};
+  *run = lag_app_like(c->app);
   run->args.method = method;
   int rc = lag_app_set_up(run);
   if (rc) return rc;
@@ -306,15 +303,14 @@ static int one_method(Cloud *c, int method) {
 /* c->names := the methods of --method, with commas between them; NULL: the scene's, named when set up. */
 static int split_methods(Cloud *c) {
   const char *list = c->app->args.method;
-  c->methods = list ? 0 : 1;
   c->names = calloc((list ? strlen(list) : 0) + 1, sizeof *c->names);
-  if (!c->names) return lag_app_error(&c->app->args, "out of memory");
-  for (size_t n; list && *list; list += n + strspn(list + n, ", ")) {
-    n = lag_app_method_length(list);
-    if (!(c->names[c->methods] = calloc(n + 1, 1))) return lag_app_error(&c->app->args, "out of memory");
-    memcpy(c->names[c->methods++], list, n);
+  for (; c->names && list; list = lag_app_next_method(list)) {
+    char *name = calloc(lag_app_method_length(list) + 1, 1);
+    if (!(c->names[c->methods++] = name)) return lag_app_error(&c->app->args, "out of memory");
+    memcpy(name, list, lag_app_method_length(list));
   }
-  return 0;
+  if (!c->methods) c->methods = 1;
+  return c->names ? 0 : lag_app_error(&c->app->args, "out of memory");
 }
 
 int lag_app_cloud(App *app) {

@@ -59,11 +59,24 @@ int lag_args_count(const Args *a, const char *option, const char *text, const ch
   return 0;
 }
 
+int lag_args_positive(const Args *a, const char *option, const char *text, const char *example, const char *meaning,
+                      double *x) {
+  if (!text) return 0;
+  if (!lag_args_number(a, option, text, example, x)) return EXIT_USAGE;
+  return *x > 0 ? 0 : lag_app_error(a, "%s %s: %s, for example %s", option, text, meaning, example);
+}
+
+int lag_args_every(const Args *a, double *every) {
+  return lag_args_positive(a, "--every", a->every, "--every 0.01", "the time between rows must be positive", every);
+}
+
 static const Option options[] = {
 #define TO(f) offsetof(Args, f), 0
 #define OWN_FLAG TO
 #define OWN_TEXT TO
 #define OWN_LIST(f) offsetof(Args, f), offsetof(Args, n##f)
+#define PICTURE_FLAG(f) TO(picture.f)
+#define PICTURE_TEXT(f) TO(picture.f)
 #define LAGC(...)
 #define BOTH(name, brief, value, takes, hint, commands, analyses, field, text) \
   {name, brief, value, takes, hint, analyses, field, text},
@@ -199,7 +212,8 @@ static unsigned analyses_with(const Option *o) {
   return all;
 }
 
-/* Analyses and what they take; an option of several is said to be for the first. */
+/* Analyses and what they take. An option of several is said to be for the first; --design stands behind --fit, which it
+ * takes. */
 static const struct {
   unsigned is;
   const char *option, *takes;
@@ -221,32 +235,37 @@ static const struct {
     {LYAPUNOV, "--lyapunov",
      ", which takes name=value, --until, --transient, --exponents, a method, -o, --svg and --json"},
     {EFFECTS, "--effects", ", which takes name=value, --until and a method"},
+    {REFERENCE, "--reference", ", which takes name=value and --until"},
 };
+enum { NANALYSES = sizeof analyses / sizeof *analyses };
+
+unsigned lag_args_analysis_named(const char *option) {
+  int i = 0;
+  while (i < NANALYSES && strcmp(analyses[i].option, option) != 0) i++;
+  return i < NANALYSES ? analyses[i].is : 0;
+}
 
 /* Index of the first of these analyses. */
 static int first_of(unsigned some) {
-  int i = 0, last = (int)(sizeof analyses / sizeof *analyses) - 1;
-  while (i < last && !(analyses[i].is & some)) i++;
+  int i = 0;
+  while (i < NANALYSES - 1 && !(analyses[i].is & some)) i++;
   return i;
 }
 
 /* Refuses options that a run, or the analysis that is asked for, does not use. */
-static int check_analysis(const Args *a) {
-  const unsigned what = a->sweep ? SWEEP : a->design ? DESIGN : a->fit ? FIT : a->modes ? MODES
-                        : a->linearize ? LINEARIZE
-                        : a->orbit ? ORBIT : a->continues ? CONTINUE
-                        : a->cost ? COST : a->reference ? REFERENCE
-                        : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
+static int check_analysis(Args *a) {
+  unsigned what = RUN;
+  for (int i = 0; i < NANALYSES; i++)
+    if (is_given(a, find_option(a, analyses[i].option, strlen(analyses[i].option)))) what = analyses[i].is;
+  a->analysis = what;
   for (int i = 0; i < NOPTIONS; i++) {
     const Option *o = &options[i];
     unsigned with = analyses_with(o);
     if (!is_given(a, o) || with & what) continue;
-    if (what != RUN && what != REFERENCE)
-      return lag_app_error(a, "%s has no meaning for %s%s", o->name, analyses[first_of(what)].option,
-                           analyses[first_of(what)].takes);
-    return with & RUN
-               ? lag_app_error(a, "%s has no meaning for --reference, which takes name=value and --until", o->name)
-               : lag_app_error(a, "%s is for %s", o->name, analyses[first_of(with)].option);
+    if (what == RUN || (what == REFERENCE && !(with & RUN)))
+      return lag_app_error(a, "%s is for %s", o->name, analyses[first_of(with)].option);
+    return lag_app_error(a, "%s has no meaning for %s%s", o->name, analyses[first_of(what)].option,
+                         analyses[first_of(what)].takes);
   }
   return check_files(a, what);
 }
@@ -257,37 +276,34 @@ size_t lag_app_method_length(const char *list) {
   return n + strcspn(list + n, ",");
 }
 
+const char *lag_app_next_method(const char *list) {
+  list += lag_app_method_length(list);
+  return *list ? list + 1 + strspn(list + 1, " ") : NULL;
+}
+
 int lag_app_overlays(const Args *a) {
   return a->nscenes > 1 || a->nvs > 0 || a->starts || (a->method && a->method[lag_app_method_length(a->method)] == ',');
 }
 
-/* An option for one run that a picture of several goes without, or NULL. */
-static const char *of_one_run(const Args *a) {
-  return a->out           ? "-o"
-         : a->json        ? "--json"
-         : a->html        ? "--html"
-         : a->save        ? "--save-state"
-         : a->resume      ? "--resume"
-         : a->events      ? "--events"
-         : a->measures    ? "--measure"
-         : a->tangent     ? "--tangent"
-         : a->sensitivity ? "--sensitivity"
-         : a->volume      ? "--volume"
-         : a->accuracy    ? "--accuracy"
-                          : NULL;
+/* The first of these options that is given, or NULL. */
+static const char *first_given(const Args *a, const char *const *names) {
+  for (; *names; names++) {
+    const Option *o = find_option(a, *names, strlen(*names));
+    if (is_given(a, o)) return o->brief ? o->brief : o->name;
+  }
+  return NULL;
 }
+
+/* Options for one run that a picture of several goes without. */
+static const char *const of_one_run[] = {"--output", "--json", "--html", "--save-state", "--resume", "--events",
+                                         "--measure", "--tangent", "--sensitivity", "--volume", "--accuracy", NULL};
 
 /* --cloud draws one scene by several methods, and writes nothing else. */
 static int check_cloud(const Args *a) {
-  const char *other = a->section        ? "--section"
-                      : a->vs           ? "--vs"
-                      : a->starts       ? "--starts"
-                      : a->distance     ? "--distance"
-                      : a->energy_error ? "--energy-error"
-                      : a->portrait     ? "--portrait"
-                      : a->potential    ? "--potential"
-                      : a->sketch       ? "--sketch"
-                                        : of_one_run(a);
+  static const char *const others[] = {"--section", "--vs", "--starts", "--distance", "--energy-error", "--portrait",
+                                       "--potential", "--sketch", NULL};
+  const char *other = first_given(a, others);
+  other = other ? other : first_given(a, of_one_run);
   if (other) return lag_app_error(a, "%s and --cloud: a cloud is a picture of its own; leave one of them out", other);
   if (a->nscenes > 1)
     return lag_app_error(a, "--cloud: two scenes are named, %s and %s; a cloud is around the start of one",
@@ -300,7 +316,7 @@ static int check_cloud(const Args *a) {
 
 /* Several scenes or methods, or --vs, draw one picture, and write nothing else. */
 static int check_overlay(const Args *a) {
-  const char *other = of_one_run(a);
+  const char *other = first_given(a, of_one_run);
   if (a->cloud) return check_cloud(a);
   if (a->fit && !a->vs && !a->starts) return 0;
   if (!lag_app_overlays(a)) return 0;
@@ -357,9 +373,9 @@ static int check_pictures(const Args *a) {
       {a->plot_x && !a->plot_y, "--plot-x %s: the other axis is missing; add --plot-y NAME", a->plot_x},
       {(a->points || a->from || a->trace || a->no_rods) && !a->html,
        "--points, --from, --trace and --no-rods need an animation: add --html FILE", NULL},
-      {a->drawing && !(atoi(a->drawing) >= 1 && atoi(a->drawing) <= 100),
-       "--drawing %s: a number of instants from 1 to 100 is needed", a->drawing},
-      {a->drawing && (!a->svg || a->section || axes || energies),
+      {a->picture.drawing && !(atoi(a->picture.drawing) >= 1 && atoi(a->picture.drawing) <= 100),
+       "--drawing %s: a number of instants from 1 to 100 is needed", a->picture.drawing},
+      {a->picture.drawing && (!a->svg || a->section || axes || energies),
        "--drawing is a picture of its own, which `lagc plot` draws; leave out other axes", NULL},
       {a->section && a->html, "--section and --html: a motion is shown in time; leave one of them out", NULL}};
   return first_mistake(a, sizeof m / sizeof *m, m);
@@ -386,7 +402,7 @@ static const char *file_of_doubles(const char *path) {
   return of_doubles && strcmp(LAG_PRECISION, "double") != 0 ? path : NULL;
 }
 
-static int check(const Args *a) {
+static int check(Args *a) {
   const char *doubles = file_of_doubles(a->out) ? a->out : file_of_doubles(a->motions);
   const Mistake streams[] = {
       {is_stdout(a->motions), "--motions -: motions are written to a file, for example --motions motions.csv", NULL},

@@ -133,30 +133,21 @@ static void json_point(Json *j, const Job *job, const Part *part, const BranchPo
   lag_json_string(j, "kind", at->kind == BRANCH_REGULAR ? "end" : kind_word(at->kind, part->orbit != NULL));
   lag_json_number(j, "parameter", parameter_at(job, part, at));
   if (part->orbit) lag_json_number(j, "period", period_at(part, at));
-  lag_json_begin(j, "state", '{');
-  for (int i = 0; i < job->app->sim->pb.n; i++)
+  JSON_EACH(j, "state", '{', i, job->app->sim->pb.n)
     lag_json_number(j, lag_state_column(job->app->sim, i).name,
                     lag_sim_declared(job->app->sim, i, state_at(job, part, at, i)));
-  lag_json_end(j, '}');
   lag_json_count(j, "growing", at->unstable);
   if (at->unfollowed) lag_json_string(j, "unfollowed", at->unfollowed);
-  lag_json_begin(j, part->orbit ? "multipliers" : "rates", '[');
-  for (int i = 0; i < at->spectrum.n; i++) {
+  JSON_EACH(j, part->orbit ? "multipliers" : "rates", '[', i, at->spectrum.n)
     lag_json_row(j, NULL, 2, (const double[]){at->spectrum.re[i], at->spectrum.im[i]});
-  }
-  lag_json_end(j, ']');
   lag_json_end(j, '}');
 }
 
 void lag_continue_put_json(FILE *f, const Job *job) {
-  Json j = {.f = f};
-  lag_json_begin(&j, NULL, '{');
-  lag_report_json_head(job->app, &j);
+  Json j = lag_report_json_open(job->app, f);
   lag_json_strings(&j, {"of", lag_continue_solutions(job)}, {"over", job->name});
-  lag_json_begin(&j, "branches", '[');
-  for (int k = 0; k < job->nparts; k++) {
+  JSON_OBJECTS(&j, "branches", k, job->nparts) {
     const Part *part = &job->part[k];
-    lag_json_begin(&j, NULL, '{');
     lag_json_counts(&j, {"branch", part->number}, {"from", part->from}, {"points", part->branch.npoints});
     lag_json_string(&j, "end", ends[part->branch.end]);
     if (part->why[0]) lag_json_string(&j, "why", part->why);
@@ -164,9 +155,7 @@ void lag_continue_put_json(FILE *f, const Job *job) {
     for (const BranchPoint *at = part->branch.first; at; at = at->next)
       if (at->kind != BRANCH_REGULAR || !at->next) json_point(&j, job, part, at);
     lag_json_end(&j, ']');
-    lag_json_end(&j, '}');
   }
-  lag_json_end(&j, ']');
   lag_json_close(&j);
 }
 
@@ -260,12 +249,7 @@ int lag_continue_write_rows(Job *job) {
   const char *out = app->args.out ? app->args.out : app->args.resume;
   if (!out && !app->args.svg) return 0;
   if (add_rows(job)) return lag_app_error(&app->args, "out of memory");
-  if (!out) return 0;
-  if (lag_rows_open(&app->rows, out, &app->table)) return lag_app_io_error(app, out);
-  int rc = 0;
-  for (size_t k = 0; k < app->table.nrows && rc == 0; k++)
-    rc = lag_rows_write(&app->rows, app->table.data + k * (size_t)app->table.ncols);
-  return lag_rows_close(&app->rows, rc == 0) || rc ? lag_app_io_error(app, out) : 0;
+  return out ? lag_app_write_table(app, out, &app->table) : 0;
 }
 
 /* Rows of the picture: the parameter and the value where it is stable, or where it is not; rows without values part

@@ -9,11 +9,6 @@
 #include "io/csv_file.h"
 #include "numeric/fnv1a.h"
 
-static unsigned long long hash_numbers(unsigned long long h, int n, const double *x) {
-  for (int i = 0; i < n; i++) h = lag_hash_number(h, x[i]);
-  return h;
-}
-
 /* Hash of the model and of all values but the parameter. */
 static unsigned long long hash_values(Job *job) {
   lag_sim *sim = job->app->sim;
@@ -22,8 +17,8 @@ static unsigned long long hash_values(Job *job) {
   int index = 0, is_parameter = lag_find_name(job->app->scene->model, job->name, &index, &v) == LAG_IS_P;
   for (int i = 0; i < job->app->scene->model->np; i++)
     h = lag_hash_number(h, is_parameter && i == index ? 0 : sim->p[i]);
-  h = hash_numbers(h, sim->scene->model->nu, sim->hold);
-  return hash_numbers(h, lag_sim_method(sim)->noptions, lag_sim_options(sim));
+  h = lag_hash_numbers(h, sim->scene->model->nu, sim->hold);
+  return lag_hash_numbers(h, lag_sim_method(sim)->noptions, lag_sim_options(sim));
 }
 
 void lag_continue_describe(Job *job) {
@@ -45,16 +40,12 @@ void lag_continue_describe(Job *job) {
   snprintf(s + n, size - n, ", values %016llx", h);
 }
 
-/* *x := the number of a field, or the index of its word. */
-static int read_field(const CsvFile *f, const Column *c, const char *field, double *x) {
-  char *end;
-  if (!c->words) {
-    *x = strtod(field, &end);
-    return *field && !*end ? 0 : lag_csv_refuse(f, "%s: `%s` is no number", c->name, field);
-  }
+/* *x := the number of field i, or the index of its word. */
+static int read_field(const CsvFile *f, const Column *c, int i, double *x) {
+  if (!c->words) return lag_csv_number(f, i, c->name, x);
   for (int k = 0; c->words[k]; k++)
-    if (strcmp(c->words[k], field) == 0) return *x = k, 0;
-  return lag_csv_refuse(f, "%s: `%s` is none of the words of this column", c->name, field);
+    if (strcmp(c->words[k], f->field[i]) == 0) return *x = k, 0;
+  return lag_csv_refuse(f, "%s: `%s` is none of the words of this column", c->name, f->field[i]);
 }
 
 /* The names in the first line are those of this run. */
@@ -78,7 +69,7 @@ static int take_row(Job *job, CsvFile *f) {
     return lag_csv_refuse(f, "the file was written by `%s`; this is `%s`: write the same model, NAME, values and "
                              "options, or leave out --resume", by, job->written_by);
   for (int i = 0; i < t->ncols; i++)
-    if (read_field(f, &t->cols[i], f->field[i], &row[i])) return -1;
+    if (read_field(f, &t->cols[i], i, &row[i])) return -1;
   if (!isfinite(row[0])) return lag_csv_refuse(f, "%s: `%s` is no place of a branch", f->names[0], f->field[0]);
   if (!(row[1] >= 1 && row[1] <= 1e6 && row[1] == rint(row[1])))
     return lag_csv_refuse(f, "%s: `%s` is no number of a branch: 1, 2, ...", f->names[1], f->field[1]);

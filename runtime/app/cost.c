@@ -383,26 +383,16 @@ static void check_answers(App *app, Cost *c) {
 
 /* ---- The command */
 
-typedef struct Drawing {
-  const App *app;
-  const Cost *cost;
-} Drawing;
-
-static int draw(const char *svg, void *drawing) {
-  const Drawing *d = drawing;
-  return lag_cost_put_picture(svg, d->app, d->cost);
-}
-
-static int show(App *app, const Cost *c) {
+static int show(App *app, Cost *c) {
   const Args *a = &app->args;
   const CostRun *run;
+  char title[300];
+  snprintf(title, sizeof title, "%s, %s: what accuracy costs", app->scene->model->name, app->scene->name);
   if (a->json) lag_cost_put_json(stdout, app, c);
   else if (!a->quiet) lag_cost_put_text(stdout, app, c);
-  if (a->out) {
-    int picture = lag_outfile_has_suffix(a->out, "svg png"),
-        rc = picture ? lag_app_picture(app, a->out, draw, &(Drawing){app, c}) : lag_cost_put_rows(a->out, app, c);
-    if (rc) return picture ? rc : lag_app_io_error(app, a->out);
-  }
+  if (a->out && lag_outfile_has_suffix(a->out, "svg png")) {
+    if (lag_app_picture(app, a->out, title, lag_cost_put_picture, c)) return EXIT_USAGE;
+  } else if (a->out && lag_cost_put_rows(a->out, app, c)) return lag_app_io_error(app, a->out);
   if (c->stopped) return lag_app_interrupted();
   if (c->target > 0 && !lag_cost_answer(c->method, c->nmethods, c->target, &run)) return EXIT_RUN;
   return EXIT_FINE;
@@ -411,10 +401,9 @@ static int show(App *app, const Cost *c) {
 static int run_cost(App *app, Cost *c) {
   const Args *a = &app->args;
   int limited = 0, rc = lag_cost_list_methods(app, c);
-  if (rc == 0 && a->target &&
-      (!lag_args_number(a, "--target", a->target, "--target 1e-8", &c->target) || c->target <= 0))
-    rc =
-        lag_app_error(a, "--target %s: an error to reach, relative and positive; for example --target 1e-8", a->target);
+  if (rc == 0)
+    rc = lag_args_positive(a, "--target", a->target, "--target 1e-8", "an error to reach, relative and positive",
+                           &c->target);
   rc = rc ? rc : lag_app_check_outputs(app);
   app->progress = isatty(2) && !a->quiet ? 0 : -1;
   rc = rc                                            ? rc
@@ -466,9 +455,8 @@ int lag_app_cost(App *app) {
                          a->error);
   int failed = lag_cost_begin(&cost, rows, output > 0 ? 1 : app->sim->pb.n, t0, span);
   rc = failed ? lag_app_error(a, "out of memory") : span == 0.0 ? lag_app_no_span(app) : 0;
-  if (rc == 0 && a->seconds &&
-      (!lag_args_number(a, "--seconds", a->seconds, "--seconds 60", &cost.seconds) || cost.seconds <= 0))
-    rc = lag_app_error(a, "--seconds %s: the time to spend, for example --seconds 60", a->seconds);
+  if (rc == 0)
+    rc = lag_args_positive(a, "--seconds", a->seconds, "--seconds 60", "the time to spend", &cost.seconds);
   cost.reference.output = output;
   if (rc == 0 && !a->reference) {
     rc = run_cost(app, &cost);

@@ -72,6 +72,6 @@ int lag_cost_put_rows(const char *path, const App *app, const Cost *c);
 /* realtime.c: --realtime: methods of equal steps with the step that was asked. Returns the exit status. */
 int lag_app_realtime(App *app, const Cost *c);
 
-/* cost_picture.c: time against error, as SVG (-1 with errno), or in a terminal. */
-int lag_cost_put_picture(const char *path, const App *app, const Cost *c);
+/* cost_picture.c: time against error, for lag_app_picture (cost: a Cost), or in a terminal. */
+int lag_cost_put_picture(const Picture *picture, void *cost);
 void lag_cost_sketch(FILE *f, const Cost *c);

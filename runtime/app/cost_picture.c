@@ -1,7 +1,6 @@
 /* Pictures of --cost: what accuracy costs in time, on logarithmic axes. Enters: methods with their runs; leaves: an
  * SVG file, or lines for a terminal. Holds: at most one curve a family, told apart by marks and dashes as well as
  * colours; legible at 8 cm. */
-#include <errno.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -200,36 +199,30 @@ static void put_names(FILE *f, const Panel *r, const Curve *all, int n) {
   }
 }
 
-int lag_cost_put_picture(const char *path, const App *app, const Cost *c) {
+int lag_cost_put_picture(const Picture *picture, void *cost) {
+  const Cost *c = cost;
   Curve *all = calloc(LAG_COST_FAMILIES, sizeof *all);
-  Outfile o;
-  if (!all || lag_outfile_open(&o, path)) {
-    int why = all ? errno : ENOMEM;
-    free(all);
-    errno = why;
-    return -1;
-  }
-  char title[300];
+  FILE *f = picture->f;
+  if (!all) return -1;
   int n = take_curves(c, all);
   Panel r = panel_of(all, n);
-  snprintf(title, sizeof title, "%s, %s: what accuracy costs", app->scene->model->name, app->scene->name);
-  lag_svg_large_head(o.f, PICTURE_WIDTH, PICTURE_HEIGHT, SIZE, title);
-  put_axes(o.f, &r);
-  put_floor(o.f, &r, DBL_EPSILON, "rounding", c->reference.uncertainty < DBL_EPSILON ? "end" : "start");
-  put_floor(o.f, &r, c->reference.uncertainty, "reference", c->reference.uncertainty < DBL_EPSILON ? "start" : "end");
-  put_front(o.f, &r, c);
-  for (int i = 0; i < n; i++) put_curve(o.f, &r, &all[i]);
+  lag_svg_large_head(picture, PICTURE_WIDTH, PICTURE_HEIGHT, SIZE);
+  put_axes(f, &r);
+  put_floor(f, &r, DBL_EPSILON, "rounding", c->reference.uncertainty < DBL_EPSILON ? "end" : "start");
+  put_floor(f, &r, c->reference.uncertainty, "reference", c->reference.uncertainty < DBL_EPSILON ? "start" : "end");
+  put_front(f, &r, c);
+  for (int i = 0; i < n; i++) put_curve(f, &r, &all[i]);
   for (int i = 0; i < n; i++) {
     int known = 0; /* one triangle for curves with the same slope */
     for (int k = 0; k < i; k++) known |= fabs(all[k].m->order - all[i].m->order) < 0.2;
-    if (!known) put_slope(o.f, &r, &all[i]);
+    if (!known) put_slope(f, &r, &all[i]);
   }
-  put_names(o.f, &r, all, n);
+  put_names(f, &r, all, n);
   fputs("<path fill=\"#f0c808\" fill-opacity=\"0.35\" d=\"M572 532h20v14h-20z\"/>\n<text x=\"598\" y=\"545\" "
-        "font-size=\"15\">up to twice the least time</text>\n</svg>\n",
-        o.f);
+        "font-size=\"15\">up to twice the least time</text>\n",
+        f);
   free(all);
-  return lag_outfile_close(&o, OUTFILE_KEEP);
+  return 0;
 }
 
 /* ---- In a terminal */

@@ -85,13 +85,6 @@ static int lacks_time(const Cost *c) {
   return any;
 }
 
-static double smallest_error(const Cost *c) {
-  double least = HUGE_VAL;
-  for (int i = 0; i < c->nmethods; i++)
-    for (int k = 0; k < c->method[i].nruns; k++) least = fmin(least, c->method[i].run[k].error);
-  return least;
-}
-
 /* The fastest setting for an error, as a command. Returns 0 where no run has such an error. */
 static int put_cheapest(FILE *f, const App *app, const Cost *c, double error) {
   const CostRun *run;
@@ -106,7 +99,7 @@ static int put_cheapest(FILE *f, const App *app, const Cost *c, double error) {
 }
 
 static void put_answer(FILE *f, const App *app, const Cost *c) {
-  const double rounding = 1e-14;
+  const double rounding = 1e-14, smallest = lag_cost_smallest_error(c->method, c->nmethods);
   static const double errors[] = {1e-3, 1e-6, 1e-9, 1e-12};
   int shown = 0;
   if (c->target > 0) {
@@ -115,9 +108,9 @@ static void put_answer(FILE *f, const App *app, const Cost *c) {
       fprintf(f, "no setting with an error of %g or less is one that `lagc run` accepts\n", c->target);
     else
       fprintf(f, "no setting has an error of %g or less; the smallest found is %.1e; raise --target%s\n", c->target,
-              smallest_error(c),
-              smallest_error(c) > rounding && lacks_time(c) ? ", or allow more time (--seconds)"
-                                                            : ": that is rounding of doubles, or its growth");
+              smallest,
+              smallest > rounding && lacks_time(c) ? ", or allow more time (--seconds)"
+                                                   : ": that is rounding of doubles, or its growth");
     return;
   }
   for (size_t i = 0; i < sizeof errors / sizeof *errors; i++) shown += put_cheapest(f, app, c, errors[i]);
@@ -126,7 +119,7 @@ static void put_answer(FILE *f, const App *app, const Cost *c) {
     fprintf(f, "no setting has an error of 0.001 or less; allow more time: --seconds %.2g\n", 10 * c->seconds);
   else if (!shown)
     fprintf(f, "no setting has an error of 0.001 or less; the smallest found is %.1e: end the run earlier (--until)\n",
-            smallest_error(c));
+            smallest);
 }
 
 /* A line for each method, or for the best of each family: its times for errors of 1e-2, 1e-4, .. */
@@ -279,39 +272,29 @@ void lag_cost_put_json(FILE *f, const App *app, const Cost *c) {
   const Samples *s = &c->reference;
   const CostRun *cheapest = NULL;
   if (c->target > 0) lag_cost_answer(c->method, c->nmethods, c->target, &cheapest);
-  Json j = {.f = f};
-  lag_json_begin(&j, NULL, '{');
-  lag_json_strings(&j, {"model", app->scene->model->name}, {"scene", app->scene->name});
+  Json j = lag_app_json(app, f);
   lag_json_number(&j, "until", s->t[s->rows - 1]);
   lag_json_string(&j, "reference", c->reference_name);
   lag_json_numbers(&j, {"uncertainty", s->uncertainty}, {"target", c->target > 0 ? c->target : NAN});
   lag_json_truth(&j, "interrupted", c->stopped);
   lag_cost_put_precisions_json(&j, c);
-  lag_json_begin(&j, "methods", '[');
-  for (int i = 0; i < c->nmethods; i++) {
+  JSON_OBJECTS(&j, "methods", i, c->nmethods) {
     const CostMethod *m = &c->method[i];
-    lag_json_begin(&j, NULL, '{');
     lag_json_string(&j, "method", m->name);
     lag_json_number(&j, "order", m->order);
     lag_json_truth(&j, "best_of_family", lag_cost_best_of_family(c, family_of(c, m)) == m);
     lag_json_number(&j, "left_out_from", m->left_out > 0 ? m->left_out : NAN);
     lag_json_string(&j, "refused", m->why[0] ? m->why : NULL);
-    lag_json_begin(&j, "runs", '[');
-    for (int k = 0; k < m->nruns; k++) {
+    JSON_OBJECTS(&j, "runs", k, m->nruns) {
       const CostRun *r = &m->run[k];
-      lag_json_begin(&j, NULL, '{');
       lag_json_number(&j, m->method->flags & LAG_METHOD_ADAPTIVE ? "tolerance" : "step", r->knob);
       lag_json_numbers(&j, {"error", r->error}, {"seconds", r->time}, {"spread", r->spread});
       lag_json_counts(&j, {"steps", r->steps}, {"calls", r->calls});
       lag_json_truth(&j, "front", r->best);
       lag_json_truth(&j, "cheapest", r == cheapest);
       lag_json_string(&j, "growth", growth_of(c, r)[0] ? growth_of(c, r) : NULL);
-      lag_json_end(&j, '}');
     }
-    lag_json_end(&j, ']');
-    lag_json_end(&j, '}');
   }
-  lag_json_end(&j, ']');
   lag_json_close(&j);
 }
 

@@ -65,8 +65,8 @@ static int take_times(DesignRun *d) {
   const Args *a = &app->args;
   double t0 = app->scene->t0, span = app->until - t0, every = app->scene->every;
   if (!(every > 0)) every = fabs(span) / 200;
-  if (a->every && !lag_args_number(a, "--every", a->every, "--every 0.1", &every)) return EXIT_USAGE;
-  if (!(every > 0)) return lag_app_error(a, "--every: the time between measurements is positive");
+  if (lag_args_positive(a, "--every", a->every, "--every 0.1", "the time between measurements is positive", &every))
+    return EXIT_USAGE;
   double rows = floor(fabs(span) / every * (1 + 1e-12)) + 1;
   if (rows * d->of.fit.ncolumns > MOST_CANDIDATES)
     return lag_app_error(&app->args, "%.0f candidates are too many; write a larger --every", rows * d->of.fit.ncolumns);
@@ -186,9 +186,8 @@ static void put_points(const DesignRun *d) {
 
 static void put_report(const DesignRun *d) {
   const Fit *f = &d->of.fit;
-  char method[NAME], even[40];
-  lag_report_method(d->of.app, method, sizeof method);
-  printf("model %s, scene %s, method %s\n", d->of.app->scene->model->name, d->of.app->scene->name, method);
+  char even[40];
+  lag_report_head(d->of.app, stdout);
   printf("best %d of %d measurements, at %d times from %.6g to %.6g s:\n", d->best, d->ntimes * f->ncolumns, d->ntimes,
          d->t[0], d->t[d->ntimes - 1]);
   put_points(d);
@@ -209,22 +208,14 @@ static void put_report(const DesignRun *d) {
 static void put_json(const DesignRun *d) {
   static const char *const kinds[] = {"errors", "errors_equally_far", "errors_of_all"};
   const Fit *f = &d->of.fit;
-  Json j = {stdout, 0};
-  lag_json_begin(&j, NULL, '{');
-  lag_json_strings(&j, {"model", d->of.app->scene->model->name}, {"scene", d->of.app->scene->name});
+  Json j = lag_app_json(d->of.app, stdout);
   lag_json_count(&j, "candidates", d->ntimes * f->ncolumns);
-  lag_json_begin(&j, "measurements", '[');
-  for (int k = 0; k < d->best; k++) {
-    lag_json_begin(&j, NULL, '{');
+  JSON_OBJECTS(&j, "measurements", k, d->best) {
     lag_json_string(&j, "output", f->column[d->chosen[k] % f->ncolumns].label);
     lag_json_number(&j, "t", d->t[d->chosen[k] / f->ncolumns]);
-    lag_json_end(&j, '}');
   }
-  lag_json_end(&j, ']');
   for (int kind = 0; kind < 3; kind++) {
-    lag_json_begin(&j, kinds[kind], '{');
-    for (int i = 0; i < d->n; i++) lag_json_number(&j, f->target[i].label, d->error[kind * d->n + i]);
-    lag_json_end(&j, '}');
+    JSON_EACH(&j, kinds[kind], '{', i, d->n) lag_json_number(&j, f->target[i].label, d->error[kind * d->n + i]);
   }
   lag_json_close(&j);
 }

@@ -228,15 +228,10 @@ static int take_components(const Cost *c, const lag_model *m, lag_sim *sim, Cost
 static void print_setting(int variant, const Cost *c, double target) {
   const CostRun *run;
   const CostMethod *m = lag_cost_cheapest(c->method, c->nmethods, target, &run);
-  double least = HUGE_VAL;
-  if (m) {
+  if (m)
     printf("setting %d %.9g %.9g %s %s %.9g\n", variant, run->error, run->time, m->name, lag_cost_knob(m->method),
            run->knob);
-    return;
-  }
-  for (int i = 0; i < c->nmethods; i++)
-    for (int k = 0; k < c->method[i].nruns; k++) least = fmin(least, c->method[i].run[k].error);
-  printf("none %d %.9g\n", variant, least);
+  else printf("none %d %.9g\n", variant, lag_cost_smallest_error(c->method, c->nmethods));
 }
 
 static int note_nothing(void *context, const CostMethod *m, double part) {

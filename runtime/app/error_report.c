@@ -101,8 +101,7 @@ static void nudge(lag_sim *sim, double roundings) {
   }
 }
 
-/* Sets an option of the method that has it. */
-static int set_option(lag_sim *sim, const char *name, double value) {
+int lag_app_set_option(lag_sim *sim, const char *name, double value) {
   lag_option opt[MOST_OPTIONS];
   lag_app_options(sim->method, sim->options, 1, opt);
   for (int i = 0; i < sim->method->noptions; i++)
@@ -113,7 +112,7 @@ static int set_option(lag_sim *sim, const char *name, double value) {
 /* The run's method with equal steps, a part of the run's. */
 static int set_shorter_steps(const lag_sim *run, lag_sim *other, double part) {
   int rc = lag_app_copy_method(run, other, 1);
-  return rc ? rc : set_option(other, "step", part * lag_equal_step(run));
+  return rc ? rc : lag_app_set_option(other, "step", part * lag_equal_step(run));
 }
 
 /* How the second run differs from a more accurate setting alone; steps and work: that it took. */
@@ -134,7 +133,7 @@ static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double m
            : second->part > 0 ? set_shorter_steps(run, other, second->part)
                               : set_more_accurate(e, run, other);
   app->second_most = is_long_series(run) ? 3 * most : most; /* with as many more steps */
-  if (rc == LAG_OK && second->longest > 0) rc = set_option(other, "max_step", second->longest);
+  if (rc == LAG_OK && second->longest > 0) rc = lag_app_set_option(other, "max_step", second->longest);
   if (rc == LAG_OK) {
     if (second->nudged > 0) nudge(other, second->nudged);
     other->late = late;

@@ -117,8 +117,7 @@ void lag_report_events(const App *app, FILE *f) {
 
 void lag_report_events_json(const App *app, Json *j) {
   const lag_model *m = app->scene->model;
-  lag_json_begin(j, "events", '{');
-  for (int k = 0; k < m->nev; k++) {
+  JSON_EACH(j, "events", '{', k, m->nev) {
     double first, last;
     if (!lag_event_is_located(app->sim, k)) continue;
     lag_json_begin(j, m->ev[k].name, '{');
@@ -127,5 +126,4 @@ void lag_report_events_json(const App *app, Json *j) {
     if (app->sim->skipped[k] > 0) lag_json_number(j, "left_out", app->sim->skipped[k]);
     lag_json_end(j, '}');
   }
-  lag_json_end(j, '}');
 }

@@ -78,19 +78,14 @@ static void put_table(const Judged *all, int n, const char *simplest) {
 }
 
 static void put_json(const Judged *all, int n) {
-  Json j = {stdout, 0};
-  lag_json_begin(&j, NULL, '{');
-  lag_json_begin(&j, "scenes", '[');
-  for (int i = 0; i < n; i++) {
-    lag_json_begin(&j, NULL, '{');
+  Json j = lag_json_open(stdout);
+  JSON_OBJECTS(&j, "scenes", i, n) {
     lag_json_string(&j, "scene", all[i].scene);
     lag_json_count(&j, "values", all[i].n);
     lag_json_truth(&j, "converged", all[i].converged);
     lag_json_numbers(&j, {"misfit", all[i].misfit}, {"aic", all[i].aic}, {"bic", all[i].bic},
                          {"chance", all[i].chance});
-    lag_json_end(&j, '}');
   }
-  lag_json_end(&j, ']');
   lag_json_close(&j);
 }
 
@@ -99,7 +94,7 @@ int lag_fit_compare(App *app) {
   Judged *all = calloc((size_t)n, sizeof *all);
   if (!all) return lag_app_error(&app->args, "out of memory");
   for (int i = 0; i < n && rc == 0; i++) {
-    App one = {.program = app->program, .extras = app->extras, .args = app->args, .last_row = NAN};
+    App one = lag_app_like(app);
     one.args.scene = app->args.scenes[i];
     FitRun r = {.app = &one, .compares = 1};
     rc = lag_fit_run(&r);

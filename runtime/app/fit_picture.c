@@ -74,20 +74,24 @@ static void put_panels(FILE *out, FitRun *r, int c, double y, int last) {
   put_points(out, r, c, &q, 1);
 }
 
-int lag_fit_picture(FitRun *r, const char *path) {
-  char title[300];
-  Outfile file;
-  const char *slash = strrchr(r->app->args.data, '/');
+static int draw(const Picture *picture, void *run) {
+  FitRun *r = run;
+  FILE *f = picture->f;
   int n = r->fit.ncolumns, each = HIGH + LOW + 2 * GAP;
+  lag_svg_head(picture, WIDTH, TOP + n * each + BOTTOM);
+  for (int c = 0; c < n; c++) put_panels(f, r, c, TOP + c * each, c + 1 == n);
+  fprintf(f, "<circle cx=\"%d\" cy=\"22\" r=\"2.5\" fill=\"%s\"/>\n", WIDTH - 120, lag_colour[0]);
+  fprintf(f, "<path d=\"M%d 22h20\" stroke=\"%s\" stroke-width=\"2\"/>\n", WIDTH - 66, lag_colour[1]);
+  lag_svg_text(f, WIDTH - 112, 26, "", "data");
+  lag_svg_text(f, WIDTH - 40, 26, "", "fit");
+  return 0;
+}
+
+int lag_fit_picture(FitRun *r) {
+  const Args *a = &r->app->args;
+  const char *slash = strrchr(a->data, '/');
+  char title[300];
   snprintf(title, sizeof title, "%s: %s, fitted to %s", r->app->scene->model->name, r->app->scene->name,
-           slash ? slash + 1 : r->app->args.data);
-  if (lag_outfile_open(&file, path)) return -1;
-  lag_svg_head(file.f, WIDTH, TOP + n * each + BOTTOM, title);
-  for (int c = 0; c < n; c++) put_panels(file.f, r, c, TOP + c * each, c + 1 == n);
-  fprintf(file.f, "<circle cx=\"%d\" cy=\"22\" r=\"2.5\" fill=\"%s\"/>\n", WIDTH - 120, lag_colour[0]);
-  fprintf(file.f, "<path d=\"M%d 22h20\" stroke=\"%s\" stroke-width=\"2\"/>\n", WIDTH - 66, lag_colour[1]);
-  lag_svg_text(file.f, WIDTH - 112, 26, "", "data");
-  lag_svg_text(file.f, WIDTH - 40, 26, "", "fit");
-  fputs("</svg>\n", file.f);
-  return lag_outfile_close(&file, 1);
+           slash ? slash + 1 : a->data);
+  return lag_app_picture(r->app, a->svg, title, draw, r);
 }

@@ -168,9 +168,7 @@ static void put_weights(const FitRun *r, FILE *out) {
 
 void lag_fit_report(const FitRun *r, FILE *out) {
   const Fit *f = &r->fit;
-  char method[200];
-  lag_report_method(r->app, method, sizeof method);
-  fprintf(out, "model %s, scene %s, method %s\n", r->app->scene->model->name, r->app->scene->name, method);
+  lag_report_head(r->app, out);
   fprintf(out, "%s after %d steps, %d runs of the motion\n", f->converged ? "converged" : "not converged", f->steps,
           f->evaluations);
   if (f->nodes)
@@ -198,8 +196,7 @@ void lag_fit_report(const FitRun *r, FILE *out) {
 }
 
 static void columns_json(const Fit *f, Json *j) {
-  lag_json_begin(j, "columns", '{');
-  for (int c = 0; c < f->ncolumns; c++) {
+  JSON_EACH(j, "columns", '{', c, f->ncolumns) {
     lag_json_begin(j, f->column[c].label, '{');
     lag_json_count(j, "values", f->column[c].n);
     lag_json_number(j, "rms", f->column[c].rms);
@@ -207,41 +204,30 @@ static void columns_json(const Fit *f, Json *j) {
     lag_json_numbers(j, {"runs_expected", f->column[c].runs_expected}, {"runs_chance", f->column[c].runs_chance});
     lag_json_end(j, '}');
   }
-  lag_json_end(j, '}');
 }
 
 void lag_fit_report_json(const FitRun *r, FILE *out) {
   const Fit *f = &r->fit;
-  Json j = {out, 0};
-  lag_json_begin(&j, NULL, '{');
-  lag_json_strings(&j, {"model", r->app->scene->model->name}, {"scene", r->app->scene->name},
-                       {"method", lag_sim_method(r->app->sim)->name});
+  Json j = lag_app_json(r->app, out);
+  lag_json_string(&j, "method", lag_sim_method(r->app->sim)->name);
   lag_json_truth(&j, "converged", f->converged);
   lag_json_counts(&j, {"steps", f->steps}, {"runs", f->evaluations},
                       {"segments", f->nodes ? f->nodes->n + f->nrecords : f->nrecords});
   if (f->nodes) lag_json_number(&j, "gap", lag_fit_widest_gap(f));
   for (int what = 0; what < 2; what++) {
-    lag_json_begin(&j, what ? "errors" : "values", '{');
-    for (int i = 0; i < f->n; i++)
+    JSON_EACH(&j, what ? "errors" : "values", '{', i, f->n)
       lag_json_number(&j, f->target[i].label, what ? f->target[i].error : f->target[i].value);
-    lag_json_end(&j, '}');
   }
   for (int what = 0; what < 2 && r->app->args.profile; what++) {
-    lag_json_begin(&j, what ? "high" : "low", '{');
-    for (int i = 0; i < f->n; i++)
+    JSON_EACH(&j, what ? "high" : "low", '{', i, f->n)
       lag_json_number(&j, f->target[i].label, what ? f->target[i].high : f->target[i].low);
-    lag_json_end(&j, '}');
   }
   if (!f->trains) lag_json_matrix(&j, "correlations", f->n, f->n, f->correlation);
-  lag_json_begin(&j, "flat", '[');
-  for (int k = 0; k < f->nflat; k++) {
-    lag_json_begin(&j, NULL, '{');
+  JSON_OBJECTS(&j, "flat", k, f->nflat) {
     for (int i = 0; i < f->n; i++)
       if (f->flat[k].change[i] != 0.0)
         lag_json_number(&j, f->target[i].label, f->flat[k].change[i] * f->target[i].scale);
-    lag_json_end(&j, '}');
   }
-  lag_json_end(&j, ']');
   lag_json_row(&j, "singular_values", f->trains ? 0 : f->n, f->singular);
   lag_json_numbers(&j, {"chi_squared", f->chi_squared}, {"freedom", f->freedom});
   columns_json(f, &j);

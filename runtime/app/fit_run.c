@@ -183,9 +183,9 @@ int lag_fit_take_sigma(FitRun *r, FitColumn *c) {
     if (eq && !is_name_of(c->label, text, (size_t)(eq - text))) continue;
     if (strchr(eq ? eq + 1 : text, '['))
       return lag_app_error(a, "--sigma %s: write the number alone; its unit is that of the column, %s", text, c->label);
-    if (!lag_args_number(a, "--sigma", eq ? eq + 1 : text, "--sigma 0.01, or --sigma th=0.5", &c->sigma))
+    if (lag_args_positive(a, "--sigma", eq ? eq + 1 : text, "--sigma 0.01, or --sigma th=0.5",
+                          "the error of a value is positive", &c->sigma))
       return EXIT_USAGE;
-    if (!(c->sigma > 0)) return lag_app_error(a, "--sigma %s: the error of a value is positive", text);
   }
   return 0;
 }
@@ -410,9 +410,7 @@ static int check_size(const FitRun *r) {
 static int prepare(FitRun *r) {
   App *app = r->app;
   const Args *a = &app->args;
-  if (!app->extras.fits)
-    return lag_app_error(a, "fits need GSL, which this simulator was built without: `apt-get install libgsl-dev`, make "
-                            "lagc again, and leave out --no-gsl");
+  if (!app->extras.fits) return lag_app_no_gsl(app, "solves least squares");
   if (!a->data) return lag_app_error(a, "--fit %s: the data are missing: --data motion.csv", a->fit);
   int rc = read_files(r);
   if (rc || (rc = lag_app_set_up_start(app)) != 0 || (rc = take_times(r)) != 0) return rc;
@@ -463,7 +461,7 @@ int lag_app_fit(App *app) {
   int rc = lag_fit_run(&r);
   if (rc == 0 && a->svg && r.nfiles > 1) rc = lag_app_error(a, "--svg: a picture is of one record; name one file");
   if (rc == 0 && a->profile && lag_fit_profile(&r.fit)) rc = lag_app_error(a, "%s", r.fit.why);
-  if (rc == 0 && a->svg && lag_fit_picture(&r, a->svg)) rc = lag_app_io_error(app, a->svg);
+  if (rc == 0 && a->svg) rc = lag_fit_picture(&r);
   if (rc == 0 && a->out && lag_network_write(&r, a->out)) rc = lag_app_io_error(app, a->out);
   if (rc == 0 && a->json) lag_fit_report_json(&r, stdout);
   if (rc == 0 && !a->json) lag_fit_report(&r, stdout);

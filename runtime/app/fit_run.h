@@ -37,7 +37,7 @@ char *lag_network_targets(const lag_model *m, const char *names);
 const char *lag_network_key(const char *names, const char *parameter);
 int lag_network_write(const FitRun *r, const char *path);
 
-/* fit_report.c, fit_picture.c; the latter: 0, or -1 with errno set. */
+/* fit_report.c; fit_picture.c: --svg, 0 or an exit status after a message. */
 void lag_fit_report(const FitRun *r, FILE *f);
 void lag_fit_report_json(const FitRun *r, FILE *f);
-int lag_fit_picture(FitRun *r, const char *path);
+int lag_fit_picture(FitRun *r);

@@ -39,18 +39,15 @@ void lag_report_guides(const App *app, FILE *f) {
 void lag_report_guides_json(const App *app, Json *j) {
   const lag_model *m = app->scene->model;
   if (m->nguides == 0) return;
-  lag_json_begin(j, "guides", '{');
-  for (int k = 0; k < m->nguides; k++)
+  JSON_EACH(j, "guides", '{', k, m->nguides)
     lag_json_number(j, m->constraints->of[m->contacts[m->guides[k].tangent].constraint].name,
                     lag_sim_guide_part(app->sim, k));
-  lag_json_end(j, '}');
 }
 
 void lag_report_switches_json(const App *app, Json *j) {
   const lag_model *m = app->scene->model;
   if (m->nmodes == 0) return;
-  lag_json_begin(j, "surfaces", '{');
-  for (int k = 0; k < m->nmodes; k++) {
+  JSON_EACH(j, "surfaces", '{', k, m->nmodes) {
     long long crossings, slides;
     double time = lag_sim_switch_times(app->sim, k, &crossings, &slides);
     lag_json_begin(j, m->switches[k].surface, '{');
@@ -58,5 +55,4 @@ void lag_report_switches_json(const App *app, Json *j) {
     lag_json_number(j, "sliding_s", time);
     lag_json_end(j, '}');
   }
-  lag_json_end(j, '}');
 }

@@ -112,29 +112,21 @@ static void json_variable(Json *j, const char *name, const char *unit, double fa
 }
 
 static void put_json(FILE *f, const App *app, const LinearSystem *s) {
-  Json j = {.f = f};
+  Json j = lag_app_json(app, f);
   char name[NAME + 4], unit[64];
   const lag_model *m = app->scene->model;
-  lag_json_begin(&j, NULL, '{');
-  lag_json_strings(&j, {"model", m->name}, {"scene", app->scene->name}, {"status", "ok"},
-                       {"about", about(&app->args)});
+  lag_json_strings(&j, {"status", "ok"}, {"about", about(&app->args)});
   lag_json_number(&j, "t", s->sim->run->t);
-  lag_json_begin(&j, "states", '[');
-  for (int i = 0; i < s->n; i++) {
+  JSON_EACH(&j, "states", '[', i, s->n) {
     double factor = lag_sim_state_info(s->sim, i, name, NAME, unit, sizeof unit),
            value = lag_sim_declared(s->sim, i, s->y[i]);
     json_variable(&j, name, unit, factor, &value);
   }
-  lag_json_end(&j, ']');
-  lag_json_begin(&j, "inputs", '[');
-  for (int k = 0; k < s->nu; k++) json_variable(&j, m->u[k].name, m->u[k].unit, m->u[k].factor, NULL);
-  lag_json_end(&j, ']');
-  lag_json_begin(&j, "outputs", '[');
-  for (int i = 0; i < s->nout; i++) {
+  JSON_EACH(&j, "inputs", '[', k, s->nu) json_variable(&j, m->u[k].name, m->u[k].unit, m->u[k].factor, NULL);
+  JSON_EACH(&j, "outputs", '[', i, s->nout) {
     double factor = lag_sim_output_info(s->sim, i, name, NAME, unit, sizeof unit);
     json_variable(&j, name, unit, factor, NULL);
   }
-  lag_json_end(&j, ']');
   const lag_switch *jump = lag_jump_at(s->sim, s->y);
   if (jump) lag_json_string(&j, "jumps", jump->text);
   lag_json_row(&j, "rate", s->n, s->rate);
@@ -145,21 +137,21 @@ static void put_json(FILE *f, const App *app, const LinearSystem *s) {
 
 /* The rows of [A B; C D], with a column for each state and input. */
 static int put_file(App *app, const LinearSystem *s) {
-  int columns = s->n + s->nu, bad = 0;
-  Table t = {.ncols = columns, .cols = calloc((size_t)columns, sizeof *t.cols)};
+  int columns = s->n + s->nu, rc = 0;
+  Table t = {.ncols = columns, .keep = 1, .cols = calloc((size_t)columns, sizeof *t.cols)};
   double *row = calloc((size_t)columns, sizeof *row);
-  Rows rows = {0};
   char name[NAME + 4];
-  if (!t.cols || !row) return free(t.cols), free(row), lag_app_error(&app->args, "out of memory");
-  for (int k = 0; k < columns; k++) snprintf(t.cols[k].name, sizeof t.cols[k].name, "%s", column_name(s, k, name));
-  bad = lag_rows_open(&rows, app->args.out, &t);
-  for (int i = 0; i < s->n + s->nout && !bad; i++) {
+  if (!t.cols || !row) rc = -1;
+  for (int k = 0; k < columns && rc == 0; k++)
+    snprintf(t.cols[k].name, sizeof t.cols[k].name, "%s", column_name(s, k, name));
+  for (int i = 0; i < s->n + s->nout && rc == 0; i++) {
     for (int k = 0; k < columns; k++) row[k] = element(s, i, k);
-    bad = lag_rows_write(&rows, row);
+    rc = lag_table_add(&t, row);
   }
-  if (rows.open) bad |= lag_rows_close(&rows, !bad);
-  free(t.cols), free(row);
-  return bad ? lag_app_io_error(app, app->args.out) : 0;
+  rc = rc ? lag_app_error(&app->args, "out of memory") : lag_app_write_table(app, app->args.out, &t);
+  lag_table_free(&t);
+  free(row);
+  return rc;
 }
 
 /* ---- The command */

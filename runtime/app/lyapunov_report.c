@@ -140,9 +140,7 @@ static void conclude(FILE *f, const Lyapunov *l) {
 }
 
 static void put_text(FILE *f, App *app, const Lyapunov *l) {
-  char method[256];
-  lag_report_method(app, method, sizeof method);
-  fprintf(f, "model %s, scene %s, method %s\n", app->scene->model->name, app->scene->name, method);
+  lag_report_head(app, f);
   if (app->why[0]) fprintf(f, "chosen: %s\n", app->why);
   if (!(l->t > l->begun)) {
     fprintf(f, "no step of the run ends after t = %g s, where the measurement begins; run longer: --until\n", l->from);
@@ -170,9 +168,7 @@ static void put_text(FILE *f, App *app, const Lyapunov *l) {
 }
 
 static void json_list(Json *j, const char *name, const Lyapunov *l, double (*value)(const Lyapunov *, int)) {
-  lag_json_begin(j, name, '[');
-  for (int i = 0; i < l->k; i++) lag_json_number(j, NULL, value(l, i));
-  lag_json_end(j, ']');
+  JSON_EACH(j, name, '[', i, l->k) lag_json_number(j, NULL, value(l, i));
 }
 
 /* Number of exponents that are minus infinity. */
@@ -186,9 +182,7 @@ static void put_json(FILE *f, const App *app, const Lyapunov *l) {
   int all = l->k == l->d, sign = lag_lyapunov_sign(l, 0);
   double error, dimension = lag_lyapunov_dimension(l, &error), entropy_error,
                 entropy = lag_lyapunov_entropy(l, &entropy_error);
-  Json j = {.f = f};
-  lag_json_begin(&j, NULL, '{');
-  lag_report_json_head(app, &j);
+  Json j = lag_report_json_open(app, f);
   lag_json_numbers(&j, {"from", l->begun}, {"until", l->t});
   lag_json_counts(&j, {"steps", l->steps}, {"blocks", l->nblocks}, {"phase_space", l->d});
   json_list(&j, "exponents", l, lag_lyapunov_exponent);

@@ -95,8 +95,6 @@ void lag_report_measures(const App *app, FILE *f) {
 
 void lag_report_measures_json(const App *app, Json *j) {
   if (!app->measures) return;
-  lag_json_begin(j, "measures", '{');
-  for (int k = 0; k < lag_measures_count(app->measures); k++)
+  JSON_EACH(j, "measures", '{', k, lag_measures_count(app->measures))
     lag_json_number(j, app->measure_names[k], app->measured[k]);
-  lag_json_end(j, '}');
 }

@@ -36,11 +36,7 @@ static int refuse(const App *app) {
   const lag_model *m = app->scene->model;
   const Args *a = &app->args;
   const char *source = app->program->source;
-  if (!app->extras.algebra) {
-    return lag_app_error(
-        a, "this simulator was built without GSL, which finds roots and eigenvalues; install GSL (libgsl-dev), make "
-           "lagc anew, and leave out --no-gsl");
-  }
+  if (!app->extras.algebra) return lag_app_no_gsl(app, "finds roots and eigenvalues");
   if (!m->linear && !in_tangent_space(app)) {
     return lag_app_error(
         a,
@@ -342,8 +338,7 @@ static void put_text(FILE *f, const App *app, const Equilibrium *r, const Modes 
 
 /* A JSON object of a state in declared units; with im a mode shape, entries [re, im]. */
 static void json_vector(Json *j, const char *name, const lag_model *m, const double *re, const double *im) {
-  lag_json_begin(j, name, '{');
-  for (int i = 0; i < m->nq + m->nz; i++) {
+  JSON_EACH(j, name, '{', i, m->nq + m->nz) {
     const lag_var *v = variable(m, i);
     if (im) {
       lag_json_row(j, v->name, 2, (const double[]){re[i] / v->factor, im[i] / v->factor});
@@ -351,43 +346,32 @@ static void json_vector(Json *j, const char *name, const lag_model *m, const dou
       lag_json_number(j, v->name, (re[i] - v->offset) / v->factor);
     }
   }
-  lag_json_end(j, '}');
-}
-
-static void json_head(Json *j, const App *app, const char *status) {
-  lag_json_begin(j, NULL, '{');
-  lag_json_strings(j, {"model", app->scene->model->name}, {"scene", app->scene->name}, {"status", status});
 }
 
 static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Modes *s, const Amplitudes *bends) {
   const lag_model *m = app->scene->model;
   char text[300];
-  Json j = {.f = f};
+  Json j = lag_app_json(app, f);
   put_reason(s, app->scene->model->flags, text, sizeof text);
-  json_head(&j, app, "ok");
-  lag_json_strings(&j, {"verdict", verdicts[s->verdict].name}, {"reason", text}, {"note", caution_of(app, r)});
+  lag_json_strings(&j, {"status", "ok"}, {"verdict", verdicts[s->verdict].name}, {"reason", text},
+                       {"note", caution_of(app, r)});
   lag_json_count(&j, "steps", r->steps);
   json_vector(&j, "start", m, r->start, NULL);
   json_vector(&j, s->steady ? "steady_motion" : "equilibrium", m, r->found, NULL);
   if (s->steady) {
-    lag_json_begin(&j, "velocity", '{');
     Rates rates = steady_rates(m, r);
-    for (int i = 0; i < rates.n; i++) lag_json_number(&j, variable(m, i)->name, rates.of[i] / variable(m, i)->factor);
-    lag_json_end(&j, '}');
+    JSON_EACH(&j, "velocity", '{', i, rates.n)
+      lag_json_number(&j, variable(m, i)->name, rates.of[i] / variable(m, i)->factor);
   }
   lag_json_truth(&j, "pairs", s->pairs != 0);
-  lag_json_begin(&j, "modes", '[');
-  for (int i = 0; i < s->n; i++) {
+  JSON_OBJECTS(&j, "modes", i, s->n) {
     const Mode *k = &s->mode[i];
-    lag_json_begin(&j, NULL, '{');
     lag_json_numbers(&j, {"re", k->re}, {"im", k->im});
     lag_json_truth(&j, "free", k->free != 0);
     lag_json_count(&j, "repeats", k->repeats);
     json_vector(&j, "shape", m, k->shape_re, k->shape_im);
     if (bends->bend) lag_app_json_amplitude(&j, m, &bends->bend[i]);
-    lag_json_end(&j, '}');
   }
-  lag_json_end(&j, ']');
   if (bends->bend) lag_app_json_couplings(&j, m, s, bends);
   lag_json_close(&j);
 }
@@ -396,8 +380,8 @@ static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Mode
 
 static void json_none(const App *app) {
   if (!app->args.json) return;
-  Json j = {.f = stdout};
-  json_head(&j, app, app->args.steady ? "no steady motion" : "no equilibrium");
+  Json j = lag_app_json(app, stdout);
+  lag_json_string(&j, "status", app->args.steady ? "no steady motion" : "no equilibrium");
   lag_json_close(&j);
 }
 

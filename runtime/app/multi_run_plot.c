@@ -63,16 +63,16 @@ static void set_label(OverlaidRun *r, const Args *a, const char *value, int digi
       n += (size_t)snprintf(r->label + n, sizeof r->label - n, "%s%s", n ? ", " : "", parts[i]);
 }
 
-/* Runs o->runs[o->n], and counts it unless the method refuses the model. method[length], value: NULL for none. 0, or
- * EXIT_USAGE after a message. */
-static int add_run(Overlay *o, const char *scene, const char *method, size_t length, const char *value) {
+/* Runs o->runs[o->n] by the first method of the list, and counts it unless that refuses the model. method, value: NULL
+ * for none. 0, or EXIT_USAGE after a message. */
+static int add_run(Overlay *o, const char *scene, const char *method, const char *value) {
   const App *whole = o->app;
+  size_t length = method ? lag_app_method_length(method) : 0;
   OverlaidRun *r = &o->runs[o->n++];
   App *app = &r->app;
-  *r = (OverlaidRun){
-      .app = {.program = whole->program,
-              .extras = whole->extras, .args = whole->args, .last_row = NAN, .overlaid = 1,
-              .compared = method && whole->args.method[lag_app_method_length(whole->args.method)] == ','}};
+  *r = (OverlaidRun){.app = lag_app_like(whole)};
+  app->overlaid = 1;
+  app->compared = method && whole->args.method[lag_app_method_length(whole->args.method)] == ',';
   app->args.scene = scene;
   if ((method && !(app->args.method = r->method = calloc(length + 1, 1))) ||
       (value && !(r->sets = calloc((size_t)whole->args.nsets + 1, sizeof *r->sets))))
@@ -167,14 +167,12 @@ static int read_values(Overlay *o) {
 /* Counts the methods of --method, all of which the program knows; 0 after a message. */
 static int count_methods(const Overlay *o) {
   int n = 0;
-  for (const char *m = o->app->args.method; n == 0 || m; n++) {
-    char name[64] = "";
-    size_t length = m ? lag_app_method_length(m) : 0;
-    if (m) snprintf(name, sizeof name, "%.*s", (int)strcspn(m, " ,("), m);
-    if (m && !lag_app_find_method(o->app, name)) return lag_app_unknown_method(o->app, name), 0;
-    m = m && m[length] ? m + length + 1 + strspn(m + length + 1, " ") : NULL;
+  for (const char *m = o->app->args.method; m; m = lag_app_next_method(m), n++) {
+    char name[64];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(m, " ,("), m);
+    if (!lag_app_find_method(o->app, name)) return lag_app_unknown_method(o->app, name), 0;
   }
-  return n;
+  return n ? n : 1;
 }
 
 static int run_all(Overlay *o) {
@@ -186,14 +184,11 @@ static int run_all(Overlay *o) {
   if (!o->runs) return lag_app_error(a, "out of memory");
   for (int s = 0; s < scenes; s++) {
     const char *method = a->method;
-    for (int m = 0; m < methods; m++) {
-      size_t length = method ? lag_app_method_length(method) : 0;
+    for (int m = 0; m < methods; m++, method = method ? lag_app_next_method(method) : NULL)
       for (int v = 0; v < o->nvalues && rc == 0 && !interrupted; v++) {
-        rc = judge_run(o, add_run(o, a->nscenes ? a->scenes[s] : NULL, method, length, o->values[v]));
+        rc = judge_run(o, add_run(o, a->nscenes ? a->scenes[s] : NULL, method, o->values[v]));
         interrupted = o->n > 0 && o->runs[o->n - 1].app.status == LAG_INTERRUPTED;
       }
-      if (m + 1 < methods) method += length + 1 + strspn(method + length + 1, " ");
-    }
   }
   return rc ? rc : o->n ? 0 : lag_app_error(a, "no run is left to draw");
 }

@@ -52,7 +52,7 @@ static int check_same(App *app, App *other, PeriodicOrbit *o, PeriodicOrbit *p) 
 
 /* The periodic motion of scene --to, by the same options. */
 static int open_other(App *app, App *other, PeriodicOrbit *o, PeriodicOrbit *p) {
-  *other = (App){.program = app->program, .extras = app->extras, .args = app->args, .last_row = NAN};
+  *other = lag_app_like(app);
   other->args.scene = app->args.to;
   other->args.guess = other->args.period = NULL;
   int rc = keep_parameters(app, other);
@@ -64,24 +64,13 @@ static int open_other(App *app, App *other, PeriodicOrbit *o, PeriodicOrbit *p) 
 
 /* ---- The report */
 
-static void put_scene(FILE *f, const App *app, const Connection *c, int number, int n) {
-  char text[64];
+static void put_scene(FILE *f, const App *app, const Connection *c, int number) {
   fprintf(f, "\nscene connection_%d \"from %s to %s, in the section\" {\n  like %s\n", number, app->scene->name,
           app->args.to, app->args.to);
-  for (int k = 0; k < app->args.nsets; k++) {
-    const char *set = app->args.sets[k], *eq = strchr(set, '=');
-    if (lag_state_named(app, set, (size_t)(eq - set)) < 0) fprintf(f, "  %.*s = %s\n", (int)(eq - set), set, eq + 1);
-  }
-  for (int i = 0; i < n; i++) {
-    Column of = lag_state_column(app->sim, i);
-    fprintf(f, "%s%s = %s", i % 4 == 0 ? i ? "\n  start " : "  start " : ", ", of.name,
-            lag_number_text(lag_sim_declared(app->sim, i, c->at[i]), text));
-    if (of.unit[0] && strcmp(of.unit, "1") != 0) fprintf(f, " [%s]", of.unit);
-  }
-  fprintf(f, "\n  span %s\n}\n", lag_number_text(c->to.time, text));
+  lag_app_put_start(f, app, c->at, c->to.time);
 }
 
-static void put_text(FILE *f, const App *app, const Connections *all, int n) {
+static void put_text(FILE *f, const App *app, const Connections *all) {
   int k = 0;
   fprintf(f, "%s: %d motion%s from the periodic motion of scene %s to that of %s\n", app->scene->model->name,
           all->count,
@@ -90,13 +79,11 @@ static void put_text(FILE *f, const App *app, const Connections *all, int n) {
     fprintf(f, "%4d: %.6g s before and %.6g s after crossing %d of the one and %d of the other end; the halves meet to "
             "%.1g of the motion's size\n", ++k, c->from.time, c->to.time, c->from.cut, c->to.cut, c->residual);
   k = 0;
-  for (const Connection *c = all->first; c; c = c->next) put_scene(f, app, c, ++k, n);
+  for (const Connection *c = all->first; c; c = c->next) put_scene(f, app, c, ++k);
 }
 
 static void put_json(FILE *f, App *app, const Connections *all, int n) {
-  Json j = {.f = f};
-  lag_json_begin(&j, NULL, '{');
-  lag_report_json_head(app, &j);
+  Json j = lag_report_json_open(app, f);
   lag_json_string(&j, "to", app->args.to);
   lag_json_string(&j, "section", app->args.section);
   lag_json_begin(&j, "connections", '[');
@@ -107,28 +94,20 @@ static void put_json(FILE *f, App *app, const Connections *all, int n) {
     lag_json_count(&j, "crossing", c->from.cut);
     lag_json_count(&j, "crossing_from_end", c->to.cut);
     lag_json_number(&j, "residual", c->residual);
-    lag_json_begin(&j, "state", '{');
-    for (int i = 0; i < n; i++)
+    JSON_EACH(&j, "state", '{', i, n)
       lag_json_number(&j, lag_state_column(app->sim, i).name, lag_sim_declared(app->sim, i, c->at[i]));
-    lag_json_end(&j, '}');
     lag_json_end(&j, '}');
   }
   lag_json_end(&j, ']');
-  lag_json_end(&j, '}');
-  putc('\n', f);
+  lag_json_close(&j);
 }
 
 /* Rows of one half, in the order of time; 0 at the section. */
 static int put_half(Manifolds *m, FlowMap *f, const ConnectionEnd *e, int number, int stable, double *states) {
   int n = f->n, done = 0;
   ManifoldStart row = {.stable = stable, .phase = number, .side = e->side};
-  const lag_scene *own = f->like->scene;
-  lag_scene scene = *own;
   double along = stable ? -e->time : e->time;
-  scene.t1 = own->t0 + along;
-  f->like->scene = &scene;
-  lag_sim *sim = lag_flow_sim(f, f->t0, e->start);
-  f->like->scene = own;
+  lag_sim *sim = lag_flow_sim_along(f, f->t0, e->start, along);
   for (; sim && done <= ROWS && lag_sim_advance(sim, f->t0 + along * done / ROWS) == LAG_OK; done++)
     memcpy(states + done * n, sim->now, (size_t)n * sizeof *states);
   lag_sim_free(sim);
@@ -168,7 +147,7 @@ static int report(Manifolds *m, const Connections *all, PeriodicOrbit *o, Period
                              "starts: --manifold unstable:%d", a->to, 2 * m->phases);
   int rc = a->out || a->svg ? put_paths(m, all, o, p) : 0;
   if (rc == 0 && a->json) put_json(stdout, app, all, o->n);
-  else if (rc == 0 && !(a->out && strcmp(a->out, "-") == 0)) put_text(stdout, app, all, o->n);
+  else if (rc == 0 && !(a->out && strcmp(a->out, "-") == 0)) put_text(stdout, app, all);
   return rc;
 }
 

@@ -29,8 +29,7 @@ int lag_manifolds_settings(Manifolds *m) {
   m->wanted[0] = choice != 1;
   m->wanted[1] = choice != 0;
   m->phases = (int)fmin((double)phases, 100000);
-  if (a->follow && !lag_args_number(a, "--follow", a->follow, "--follow 20", &m->follow)) return EXIT_USAGE;
-  if (a->follow && !(m->follow > 0)) return lag_app_error(a, "--follow %s: a time above 0", a->follow);
+  if (lag_args_positive(a, "--follow", a->follow, "--follow 20", "a time above 0", &m->follow)) return EXIT_USAGE;
   if (a->manifold && !a->out && !a->svg && !a->to)
     return lag_app_error(a, "--manifold: the runs need a file: -o FILE.csv, or --svg FILE.svg for a picture");
   return lag_section_choose(m->app);
@@ -59,14 +58,9 @@ static void at_event(void *context, int k, double t, const double *before, const
 
 /* One run, as far as it goes: into a collision, or to an event that ends it. */
 static void follow(Manifolds *m, FlowMap *f, const ManifoldStart *s, double time) {
-  const lag_scene *own = f->like->scene;
-  lag_scene scene = *own;
   double along = s->stable ? -time : time;
+  lag_sim *sim = lag_flow_sim_along(f, s->t, s->y, along);
   m->now = s;
-  scene.t1 = own->t0 + along;
-  f->like->scene = &scene;
-  lag_sim *sim = lag_flow_sim(f, s->t, s->y);
-  f->like->scene = own;
   if (!sim) m->rc = lag_app_error(&m->app->args, "out of memory");
   if (sim && m->app->section >= 0) {
     sim->forwards = m->app->section + 1;
@@ -106,13 +100,9 @@ int lag_manifolds_columns(Manifolds *m, const char *number) {
   return 0;
 }
 
-/* Range of a column of the rows. */
 static double spread(const Table *t, int column) {
   double low = HUGE_VAL, high = -HUGE_VAL;
-  for (size_t r = 0; r < t->nrows; r++) {
-    double x = t->data[r * (size_t)t->ncols + (size_t)column];
-    low = fmin(low, x), high = fmax(high, x);
-  }
+  lag_table_range(t, column, &low, &high);
   return t->nrows ? high - low : 0;
 }
 

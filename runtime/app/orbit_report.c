@@ -93,8 +93,8 @@ static int given_period(const Args *a, double *T) {
   *T = 0;
   if (a->period && a->guess)
     return lag_app_error(a, "--period and --guess: the period is given, or about that; leave one out");
-  if (text && !lag_args_number(a, option, text, a->period ? "--period 6.28" : "--guess 6.28", T)) return EXIT_USAGE;
-  return text && *T <= 0 ? lag_app_error(a, "%s %s: a period is a positive time", option, text) : 0;
+  return lag_args_positive(a, option, text, a->period ? "--period 6.28" : "--guess 6.28", "a period is a positive time",
+                           T);
 }
 
 /* End of the search for a period: --until, or a little more than the scene's span, which may be the period. */
@@ -261,22 +261,26 @@ static void free_name(const App *app, char name[32]) {
   }
 }
 
-static void put_scene(FILE *f, const App *app, const PeriodicOrbit *o) {
-  char text[64], name[32];
-  free_name(app, name);
-  fprintf(f, "\nscene %s \"periodic\" {\n  like %s\n", name, app->scene->name);
+void lag_app_put_start(FILE *f, const App *app, const double *y, double span) {
+  char text[64];
   for (int k = 0; k < app->args.nsets; k++) {
     const char *set = app->args.sets[k], *eq = strchr(set, '=');
     if (lag_state_named(app, set, (size_t)(eq - set)) < 0) fprintf(f, "  %.*s = %s\n", (int)(eq - set), set, eq + 1);
   }
-  for (int i = 0; i < o->n; i++) {
+  for (int i = 0; i < app->sim->pb.n; i++) {
     Column c = lag_state_column(app->sim, i);
     fprintf(f, "%s%s = %s", i % 4 == 0 ? i ? "\n  start " : "  start " : ", ", c.name,
-            lag_number_text(lag_sim_declared(app->sim, i, o->y[i]), text));
+            lag_number_text(lag_sim_declared(app->sim, i, y[i]), text));
     if (c.unit[0] && strcmp(c.unit, "1") != 0) fprintf(f, " [%s]", c.unit);
   }
-  fprintf(f, "\n  span %s", lag_number_text(o->T * (closings(o) ? closings(o) : 1), text));
-  fputs("\n}\n", f);
+  fprintf(f, "\n  span %s\n}\n", lag_number_text(span, text));
+}
+
+static void put_scene(FILE *f, const App *app, const PeriodicOrbit *o) {
+  char name[32];
+  free_name(app, name);
+  fprintf(f, "\nscene %s \"periodic\" {\n  like %s\n", name, app->scene->name);
+  lag_app_put_start(f, app, o->y, o->T * (closings(o) ? closings(o) : 1));
 }
 
 static void put_multipliers(FILE *f, const PeriodicOrbit *o) {
@@ -357,12 +361,10 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
 }
 
 static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
-  Json j = {.f = f};
+  Json j = lag_report_json_open(app, f);
   char why[400];
   OrbitVerdict v = verdict_of(o);
   reason(o, v, why, sizeof why);
-  lag_json_begin(&j, NULL, '{');
-  lag_report_json_head(app, &j);
   lag_json_numbers(&j, {"period", o->T}, {"period_error", o->flow.forced ? NAN : o->period_error},
                        {"residual", o->residual});
   lag_json_count(&j, "newton_steps", o->steps);
@@ -379,16 +381,11 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
   }
   lag_json_end(&j, '}');
   if (closings(o) > 1) lag_json_number(&j, "whole_period", closings(o) * o->T);
-  lag_json_begin(&j, "start", '{');
-  for (int i = 0; i < o->n; i++)
+  JSON_EACH(&j, "start", '{', i, o->n)
     lag_json_number(&j, lag_state_column(app->sim, i).name, lag_sim_declared(app->sim, i, o->y[i]));
-  lag_json_end(&j, '}');
   lag_json_count(&j, "trivial_multipliers", o->ntrivial);
-  lag_json_begin(&j, "multipliers", '[');
-  for (int i = 0; i < o->nmultipliers; i++) {
+  JSON_EACH(&j, "multipliers", '[', i, o->nmultipliers)
     lag_json_row(&j, NULL, 2, (const double[]){o->re[i], o->im[i]});
-  }
-  lag_json_end(&j, ']');
   lag_json_string(&j, "closed", o->closed);
   lag_json_number(&j, "pairing", o->pairing);
   lag_json_strings(&j, {"verdict", verdict_names[v]}, {"reason", why});
@@ -399,15 +396,13 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
 
 /* How near the search came, as JSON. */
 static void json_not_found(App *app, const PeriodicOrbit *o) {
-  Json j = {.f = stdout};
-  lag_json_begin(&j, NULL, '{');
-  lag_json_strings(&j, {"model", app->scene->model->name}, {"scene", app->scene->name},
-                       {"status", "no periodic motion"});
+  Json j = lag_app_json(app, stdout);
+  lag_json_string(&j, "status", "no periodic motion");
   lag_json_numbers(&j, {"period", o->T}, {"residual", o->residual});
   lag_json_count(&j, "newton_steps", o->steps);
-  lag_json_begin(&j, "residuals", '[');
-  for (int k = 0; k < ORBIT_TRACE && o->trace[k] > 0; k++) lag_json_number(&j, NULL, o->trace[k]);
-  lag_json_end(&j, ']');
+  int traced = 0;
+  while (traced < ORBIT_TRACE && o->trace[traced] > 0) traced++;
+  lag_json_row(&j, "residuals", traced, o->trace);
   lag_json_close(&j);
 }
 
@@ -473,9 +468,7 @@ int lag_app_orbit_set_up(App *app) {
   const double fine = 1e-13;
   int rc = lag_app_set_up_start(app);
   if (rc) return rc;
-  if (!app->extras.algebra)
-    return lag_app_error(&app->args, "this simulator was built without GSL, which finds eigenvalues; install GSL "
-                                     "(libgsl-dev), make lagc anew, and leave out --no-gsl");
+  if (!app->extras.algebra) return lag_app_no_gsl(app, "finds eigenvalues");
   if (!app->args.tol && lag_sim_tolerance(app->sim) > fine && sizeof(double) == 8)
     lag_sim_set_tolerance(app->sim, fine);
   return lag_app_choose_method(app);

@@ -50,3 +50,11 @@ int lag_app_put_row(App *app) {
   /* otherwise picture_sampling.c chooses the rows of pictures */
   return lag_app_write_row(app, app->args.every || !app->sampling.on);
 }
+
+int lag_app_write_table(const App *app, const char *path, const Table *t) {
+  Rows rows;
+  if (lag_rows_open(&rows, path, t)) return lag_app_io_error(app, path);
+  int bad = 0;
+  for (size_t k = 0; k < t->nrows && !bad; k++) bad = lag_rows_write(&rows, t->data + k * (size_t)t->ncols);
+  return lag_rows_close(&rows, !bad) || bad ? lag_app_io_error(app, path) : 0;
+}

@@ -138,7 +138,7 @@ static int reduce(App *app, size_t most) {
 /* Selects the columns that pictures draw. */
 static void choose_columns(App *app) {
   PictureSampling *w = &app->sampling;
-  if (app->args.html || app->args.drawing) {
+  if (app->args.html || app->args.picture.drawing) {
     for (int i = 0; i < app->show.nshapes; i++) {
       const lag_shape *s = &app->show.shapes[i];
       for (int k = 0; k < 3; k++) add_column(w, s->a[k], 1);
@@ -146,9 +146,9 @@ static void choose_columns(App *app) {
       for (int k = 0; k < 3; k++) add_column(w, s->size[k], 0);
       for (int k = 0; k < 4; k++) add_column(w, s->turn[k], 0);
     }
-    w->common = (!app->args.svg || app->args.drawing) && !app->args.sketch;
+    w->common = (!app->args.svg || app->args.picture.drawing) && !app->args.sketch;
   }
-  for (int i = 0; i < app->drawn.n && ((app->args.svg && !app->args.drawing) || app->args.sketch); i++) {
+  for (int i = 0; i < app->drawn.n && ((app->args.svg && !app->args.picture.drawing) || app->args.sketch); i++) {
     add_column(w, app->drawn.x[i], 0);
     add_column(w, app->drawn.y[i], 0);
   }

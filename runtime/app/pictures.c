@@ -1,6 +1,5 @@
 /* Pictures as SVG, and as PNG where the path ends so and the program was built with librsvg. */
-#include <stdlib.h>
-#include <string.h>
+#include <errno.h>
 
 #include "app/app.h"
 #include "io/posix.h"
@@ -19,35 +18,40 @@ int lag_app_check_parts(const App *app) {
   return 0;
 }
 
-int lag_app_picture(const App *app, const char *path, int (*write)(const char *svg, void *context), void *context) {
-  char svg[4200], why[300] = "";
+static int make_png(const App *app, const char *svg, const char *path) {
+  char why[300] = "";
   Outfile o;
-  if (!lag_outfile_has_suffix(path, "png")) return write(path, context) ? lag_app_io_error(app, path) : 0;
-  snprintf(svg, sizeof svg, "%s.part-%ld.svg", path, (long)getpid());
-  if (write(svg, context)) return lag_app_io_error(app, svg);
-  int rc = lag_outfile_open(&o, path) ? lag_app_io_error(app, path) : 0;
-  if (rc == 0 && app->extras.png(svg, o.f, why, sizeof why)) {
-    lag_outfile_close(&o, OUTFILE_DROP);
-    rc = lag_app_error(&app->args, "%s: %s", path, why);
-  } else if (rc == 0 && lag_outfile_close(&o, OUTFILE_KEEP)) {
-    rc = lag_app_io_error(app, path);
-  }
-  unlink(svg);
+  if (lag_outfile_open(&o, path)) return lag_app_io_error(app, path);
+  if (app->extras.png(svg, o.f, why, sizeof why))
+    return lag_outfile_close(&o, OUTFILE_DROP), lag_app_error(&app->args, "%s: %s", path, why);
+  return lag_outfile_close(&o, OUTFILE_KEEP) ? lag_app_io_error(app, path) : 0;
+}
+
+int lag_app_picture(const App *app, const char *path, const char *title, int (*write)(const Picture *p, void *context),
+                    void *context) {
+  char part[4200];
+  int png = lag_outfile_has_suffix(path, "png");
+  const char *svg = png ? part : path;
+  Outfile o;
+  if (png) snprintf(part, sizeof part, "%s.part-%ld.svg", path, (long)getpid());
+  if (lag_outfile_open(&o, svg)) return lag_app_io_error(app, svg);
+  int bad = write(&(Picture){o.f, title, &app->args.picture}, context), why = errno;
+  fputs("</svg>\n", o.f);
+  int lost = lag_outfile_close(&o, bad ? OUTFILE_DROP : OUTFILE_KEEP);
+  if (bad) errno = why;
+  if (bad || lost) return lag_app_io_error(app, svg);
+  int rc = png ? make_png(app, svg, path) : 0;
+  if (png) unlink(svg);
   return rc;
 }
 
-typedef struct Drawing {
-  const App *app;
-  const char *title;
-} Drawing;
-
-static int write_table(const char *svg, void *drawing) {
-  const Drawing *d = drawing;
-  const char *instants = d->app->args.drawing;
-  if (instants) return lag_drawing_write(svg, &d->app->table, d->title, &d->app->show, atoi(instants));
-  return lag_svg_write(svg, &d->app->table, d->title, &d->app->drawn);
+static int write_table(const Picture *p, void *app) {
+  const App *a = app;
+  if (p->options->drawing) return lag_drawing_write(p, &a->table, &a->show);
+  lag_svg_write(p, &a->table, &a->drawn);
+  return 0;
 }
 
-int lag_app_draw_table(const App *app, const char *title) {
-  return app->args.svg ? lag_app_picture(app, app->args.svg, write_table, &(Drawing){app, title}) : 0;
+int lag_app_draw_table(App *app, const char *title) {
+  return app->args.svg ? lag_app_picture(app, app->args.svg, title, write_table, app) : 0;
 }

@@ -88,13 +88,9 @@ void lag_cost_put_precisions(FILE *f, const Cost *c) {
 }
 
 void lag_cost_put_precisions_json(Json *j, const Cost *c) {
-  lag_json_begin(j, "precisions", '[');
-  for (int i = 0; i < c->nprecisions; i++) {
-    lag_json_begin(j, NULL, '{');
+  JSON_OBJECTS(j, "precisions", i, c->nprecisions) {
     lag_json_string(j, "precision", c->precision[i].name);
     lag_json_number(j, "horizon", is_seen(c, &c->precision[i]) ? c->precision[i].horizon : NAN);
     lag_json_number(j, "seconds", whole(c, &c->precision[i]));
-    lag_json_end(j, '}');
   }
-  lag_json_end(j, ']');
 }

@@ -219,23 +219,17 @@ static void put_text(const App *app, const Cost *c, const FixedStep *all, int n,
 
 static void put_json(const App *app, const Cost *c, const FixedStep *all, int n, double step) {
   const FixedStep *best = choose(all, n, step, c->target);
-  Json j = {.f = stdout};
-  lag_json_begin(&j, NULL, '{');
-  lag_json_strings(&j, {"model", app->scene->model->name}, {"scene", app->scene->name});
+  Json j = lag_app_json(app, stdout);
   lag_json_number(&j, "step", step);
   lag_json_string(&j, "best", best ? best->name : NULL);
-  lag_json_begin(&j, "methods", '[');
-  for (int i = 0; i < n; i++) {
+  JSON_OBJECTS(&j, "methods", i, n) {
     const FixedStep *x = &all[i];
-    lag_json_begin(&j, NULL, '{');
     lag_json_string(&j, "method", x->name);
     lag_json_numbers(&j, {"error", x->error}, {"step_s", isnan(x->error) ? NAN : x->mean},
                          {"worst_s", isnan(x->error) ? NAN : x->worst},
                          {"largest_step", x->largest > 0 && !x->cut ? x->largest : NAN});
     lag_json_string(&j, "refused", x->why[0] ? x->why : NULL);
-    lag_json_end(&j, '}');
   }
-  lag_json_end(&j, ']');
   lag_json_close(&j);
 }
 
@@ -246,11 +240,8 @@ int lag_app_realtime(App *app, const Cost *c) {
   double *least = malloc(WATCHED * sizeof *least);
   Samples own = {0};
   const lag_method *m;
-  int n = 0, rc = 0;
-  if (!lag_args_number(a, "--realtime", a->realtime, "--realtime 1e-3", &step)) rc = EXIT_USAGE;
-  else if (!(step > 0))
-    rc = lag_app_error(a, "--realtime %s: the time of a step [s], for example --realtime 1e-3", a->realtime);
-  else if (!all || !least || lag_samples_init(&own, c->reference.rows, c->reference.n))
+  int n = 0, rc = lag_args_positive(a, "--realtime", a->realtime, "--realtime 1e-3", "the time of a step [s]", &step);
+  if (rc == 0 && (!all || !least || lag_samples_init(&own, c->reference.rows, c->reference.n)))
     rc = lag_app_error(a, "out of memory");
   for (int i = 0; rc == 0 && (m = lag_app_method_at(app, i)) != NULL; i++) {
     if (strcmp(m->name, "variational") == 0 || strcmp(m->name, "gauss") == 0)

@@ -24,6 +24,12 @@ void lag_report_method(const App *app, char *s, size_t n) {
   if (used < n) snprintf(s[used - 1] == '(' ? s + used - 1 : s + used, n - used, "%s", s[used - 1] == '(' ? "" : ")");
 }
 
+void lag_report_head(const App *app, FILE *f) {
+  char method[256];
+  lag_report_method(app, method, sizeof method);
+  fprintf(f, "model %s, scene %s, method %s\n", app->scene->model->name, app->scene->name, method);
+}
+
 /* ---- Energy and other charges: drift or balance of each, and whether it grows */
 
 const char *lag_charge_word(const lag_charge_stats *c) {
@@ -155,8 +161,7 @@ static void charges_json(const App *app, Json *j) {
                                        [LAG_TREND_OSCILLATES] = "oscillates",
                                        [LAG_TREND_GROWS] = "grows"};
   const lag_scene *s = app->scene;
-  lag_json_begin(j, "charges", '{');
-  for (int k = 0; k < lag_sim_ncharges(app->sim); k++) {
+  JSON_EACH(j, "charges", '{', k, lag_sim_ncharges(app->sim)) {
     lag_charge_stats c;
     lag_sim_charge(app->sim, k, &c);
     lag_json_begin(j, c.name, '{');
@@ -170,10 +175,8 @@ static void charges_json(const App *app, Json *j) {
     lag_json_string(j, "trend", trends[c.trend]);
     lag_json_end(j, '}');
   }
-  lag_json_end(j, '}');
-  lag_json_begin(j, "monitors", '{');
-  for (int i = 0; i < s->nmonitors; i++) lag_json_number(j, s->monitors[i].name, lag_sim_monitor_drift(app->sim, i));
-  lag_json_end(j, '}');
+  JSON_EACH(j, "monitors", '{', i, s->nmonitors)
+    lag_json_number(j, s->monitors[i].name, lag_sim_monitor_drift(app->sim, i));
 }
 
 /* ---- The run */
@@ -383,8 +386,7 @@ static void exact(const App *app, FILE *f) {
 static void exact_json(const App *app, Json *j) {
   const lag_scene *c = app->scene;
   if (c->nexact == 0) return;
-  lag_json_begin(j, "exact", '{');
-  for (int k = 0; k < c->nexact; k++) {
+  JSON_EACH(j, "exact", '{', k, c->nexact) {
     Column v = lag_state_column(app->sim, c->exact_of[k]);
     double largest, now;
     lag_sim_exact(app->sim, k, &largest, &now);
@@ -392,16 +394,13 @@ static void exact_json(const App *app, Json *j) {
     lag_json_numbers(j, {"largest", largest}, {"final", now});
     lag_json_end(j, '}');
   }
-  lag_json_end(j, '}');
 }
 
 void lag_report_text(App *app, FILE *f) {
   const lag_scene *c = app->scene;
   lag_stats st;
-  char method[256];
   lag_sim_stats(app->sim, &st);
-  lag_report_method(app, method, sizeof method);
-  fprintf(f, "model %s, scene %s, method %s\n", c->model->name, c->name, method);
+  lag_report_head(app, f);
   if (app->why[0]) fprintf(f, "chosen: %s\n", app->why);
   verdict(app, f);
   final_state(app, f);
@@ -448,29 +447,30 @@ static void constraints_json(const App *app, Json *j) {
   const lag_constraints *of = m->constraints;
   if (!of) return;
   lag_json_counts(j, {"constraints", of->n - m->ncontacts}, {"rank", lag_sim_rank(app->sim)});
-  lag_json_begin(j, "redundant", '[');
-  for (int k = 0; k < of->n; k++)
+  JSON_EACH(j, "redundant", '[', k, of->n)
     if (is_redundant(app, k)) lag_json_string(j, NULL, of->of[k].name);
-  lag_json_end(j, ']');
   lag_json_count(j, "rank_beside", lag_sim_nearby_rank(app->sim));
-  lag_json_begin(j, "start_moved", '{');
-  for (int i = 0; i < 2 * m->nq; i++) {
+  JSON_EACH(j, "start_moved", '{', i, 2 * m->nq) {
     double asked = lag_sim_requested_start(app->sim, i), begin = lag_sim_actual_start(app->sim, i);
     if (asked != begin) {
       lag_json_row(j, lag_state_column(app->sim, i).name, 2, (const double[]){asked, begin});
     }
   }
-  lag_json_end(j, '}');
-  lag_json_begin(j, "start_other", '{');
-  for (int i = 0; i < m->nq; i++)
+  JSON_EACH(j, "start_other", '{', i, m->nq)
     if (is_elsewhere(app, i)) lag_json_number(j, lag_state_column(app->sim, i).name, lag_sim_other_start(app->sim, i));
-  lag_json_end(j, '}');
 }
 
-void lag_report_json_head(const App *app, Json *j) {
-  lag_json_strings(j, {"model", app->scene->model->name}, {"scene", app->scene->name},
-                      {"method", lag_sim_method(app->sim)->name}, {"chosen", app->why[0] ? app->why : NULL},
-                      {"status", app->status < 0 ? "failed" : lag_status_name(app->status)});
+Json lag_app_json(const App *app, FILE *f) {
+  Json j = lag_json_open(f);
+  lag_json_strings(&j, {"model", app->scene->model->name}, {"scene", app->scene->name});
+  return j;
+}
+
+Json lag_report_json_open(const App *app, FILE *f) {
+  Json j = lag_app_json(app, f);
+  lag_json_strings(&j, {"method", lag_sim_method(app->sim)->name}, {"chosen", app->why[0] ? app->why : NULL},
+                       {"status", app->status < 0 ? "failed" : lag_status_name(app->status)});
+  return j;
 }
 
 /* The energy, the error of the motion, and digits that were lost. */
@@ -496,10 +496,8 @@ void lag_report_json(App *app, FILE *f) {
   int n = 2 * m->nq + m->nz;
   const char *why;
   lag_stats st;
-  Json j = {.f = f};
+  Json j = lag_report_json_open(app, f);
   lag_sim_stats(app->sim, &st);
-  lag_json_begin(&j, NULL, '{');
-  lag_report_json_head(app, &j);
   lag_json_string(&j, "message", app->status < 0 ? lag_sim_message(app->sim) : NULL);
   lag_json_number(&j, "t_end", st.t);
   lag_json_counts(&j, {"steps", st.steps}, {"rejected", st.rejected}, {"rhs_calls", st.rhs_calls});

@@ -238,16 +238,13 @@ void lag_report_sensitivity_json(App *app, Json *out) {
   for (int i = 0; i < s->nout; i++) {
     char name[64];
     lag_sim_output_info(app->sim, i, name, sizeof name, NULL, 0);
-    lag_json_begin(out, name, '{');
-    for (int j = 0; j < s->n; j++) lag_json_number(out, s->names[j], s->D[i * s->n + j]);
-    lag_json_end(out, '}');
+    JSON_EACH(out, name, '{', j, s->n) lag_json_number(out, s->names[j], s->D[i * s->n + j]);
   }
   double *D;
   int *by_runs, n = derive_measures(app, &D, &by_runs);
   for (int i = 0; i < n; i++) {
-    lag_json_begin(out, measure_key(app, i, key, sizeof key), '{');
-    for (int j = 0; j < s->n; j++) lag_json_number(out, s->names[j], D[i * s->n + j]);
-    lag_json_end(out, '}');
+    JSON_EACH(out, measure_key(app, i, key, sizeof key), '{', j, s->n)
+      lag_json_number(out, s->names[j], D[i * s->n + j]);
   }
   free(D);
   free(by_runs);

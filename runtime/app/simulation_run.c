@@ -92,12 +92,8 @@ static int choose_grid(App *app) {
   double *grid = lag_sim_output_grid(app->sim), every = app->resumed ? grid[1] : app->scene->every;
   if (lag_app_equal_times(a)) every = 0;
   double t = lag_sim_time(app->sim), origin = app->resumed && every > 0 ? grid[0] : t;
-  if (a->every) {
-    if (!lag_args_number(a, "--every", a->every, "--every 0.01", &every)) return EXIT_USAGE;
-    if (every <= 0)
-      return lag_app_error(a, "--every %s: the time between rows must be positive, for example --every 0.01", a->every);
-    origin = app->scene->t0;
-  }
+  if (lag_args_every(a, &every)) return EXIT_USAGE;
+  if (a->every) origin = app->scene->t0;
   if (!(every > 0)) {
     double h = a->energy_error ? lag_equal_step(app->sim) : 0; /* equal steps: the energy at ends of them */
     every = fabs(app->until - t) / 1000;
@@ -176,7 +172,7 @@ static int open_output(App *app) {
   if (lag_tangent_columns_open(app) || lag_sensitivity_open(app) || lag_app_volume_open(app) ||
       lag_app_choose_curves(app) || lag_portrait_open(app))
     return EXIT_USAGE;
-  if ((a->html || a->drawing) && lag_app_choose_shapes(app)) return EXIT_USAGE;
+  if ((a->html || a->picture.drawing) && lag_app_choose_shapes(app)) return EXIT_USAGE;
   if (lag_app_try_file(app, a->svg) || lag_app_try_file(app, a->html) || lag_app_try_file(app, a->save))
     return EXIT_USAGE;
   int rc = lag_sampling_open(app);

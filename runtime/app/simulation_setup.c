@@ -56,6 +56,17 @@ int lag_app_no_span(const App *app) {
                        app->scene->t0);
 }
 
+int lag_app_no_gsl(const App *app, const char *does) {
+  return lag_app_error(&app->args,
+                       "this simulator was built without GSL, which %s; install GSL (libgsl-dev), make lagc anew, and "
+                       "leave out --no-gsl",
+                       does);
+}
+
+App lag_app_like(const App *app) {
+  return (App){.program = app->program, .extras = app->extras, .args = app->args, .last_row = NAN};
+}
+
 int lag_app_read_until(App *app) {
   enum { SPANS = 20 }; /* Lyapunov exponents are means over a long time, forwards */
   const Args *a = &app->args;

@@ -42,18 +42,6 @@ static void wrapped(FILE *f, const char *text, int first, int indent) {
   putc('\n', f);
 }
 
-/* The analysis that the option of this name begins; 0: none. */
-static unsigned analysis_named(const char *name) {
-  static const struct {
-    const char *name;
-    unsigned analyses;
-  } all[] = {{"--lyapunov", LYAPUNOV}, {"--modes", MODES}, {"--linearize", LINEARIZE}, {"--orbit", ORBIT},
-             {"--continue", CONTINUE}, {"--cost", COST}, {"--sweep", SWEEP}};
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-    if (strcmp(all[i].name, name) == 0) return all[i].analyses;
-  return 0;
-}
-
 static void put_option(FILE *f, const Option *o) {
   enum { MEANINGS = 24 };
   char line[600], term[64];
@@ -72,7 +60,7 @@ static void put_options(FILE *f) {
     if (o->text && o->analyses & RUN && o->analyses != ANY) put_option(f, o);
   for (int i = 0; (o = lag_args_option(i)) != NULL; i++) {
     if (!o->text || o->analyses != ANY) continue;
-    unsigned analysis = analysis_named(o->name);
+    unsigned analysis = lag_args_analysis_named(o->name) & ~(unsigned)REFERENCE; /* its options are those of --cost */
     if (analysis) putc('\n', f);
     put_option(f, o);
     for (int k = 0; analysis && lag_args_option(k); k++) {

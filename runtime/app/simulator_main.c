@@ -120,19 +120,20 @@ typedef int Analysis(App *app);
 
 /* Work that the command line asks for. */
 static Analysis *analysis_of(const Args *a) {
-  return a->sweep                   ? lag_app_sweep
-         : a->design                ? lag_app_design
-         : a->fit                   ? lag_app_fit
-         : a->modes                 ? lag_app_modes
-         : a->linearize             ? lag_app_linearize
-         : a->orbit                 ? lag_app_orbit
-         : a->continues             ? lag_app_continue
-         : a->lyapunov              ? lag_app_lyapunov
-         : a->effects               ? lag_app_effects
-         : a->cost || a->reference  ? lag_app_cost
-         : a->cloud                 ? lag_app_cloud
-         : lag_app_overlays(a)      ? lag_app_overlay
-                                    : simulate;
+  switch (a->analysis) {
+    case SWEEP: return lag_app_sweep;
+    case DESIGN: return lag_app_design;
+    case FIT: return lag_app_fit;
+    case MODES: return lag_app_modes;
+    case LINEARIZE: return lag_app_linearize;
+    case ORBIT: return lag_app_orbit;
+    case CONTINUE: return lag_app_continue;
+    case LYAPUNOV: return lag_app_lyapunov;
+    case EFFECTS: return lag_app_effects;
+    case COST:
+    case REFERENCE: return lag_app_cost;
+    default: return a->cloud ? lag_app_cloud : lag_app_overlays(a) ? lag_app_overlay : simulate;
+  }
 }
 
 int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras) {

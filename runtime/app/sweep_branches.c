@@ -16,12 +16,6 @@ static int column_of(const CsvFile *f, const char *label) {
                         label);
 }
 
-static int read_number(const CsvFile *f, int i, double *x) {
-  char *end;
-  *x = strtod(f->field[i], &end);
-  return *f->field[i] && !*end ? 0 : lag_csv_refuse(f, "%s: `%s` is no number", f->names[i], f->field[i]);
-}
-
 int lag_sweep_branches_read(SweepApp *s, const Column *y) {
   const Args *a = &s->app->args;
   CsvFile f;
@@ -36,7 +30,7 @@ int lag_sweep_branches_read(SweepApp *s, const Column *y) {
   int rc = lag_csv_open(&f, a->continued, why, sizeof why);
   for (int k = 0; k < KEPT && rc == 0; k++) rc = (at[k] = column_of(&f, labels[k])) < 0 ? -1 : 0;
   while (rc == 0 && (more = lag_csv_row(&f)) == 1) {
-    for (int k = 0; k < KEPT && rc == 0; k++) rc = read_number(&f, at[k], &row[k]);
+    for (int k = 0; k < KEPT && rc == 0; k++) rc = lag_csv_number(&f, at[k], f.names[at[k]], &row[k]);
     if (rc == 0 && lag_table_add(&s->branches, row)) rc = lag_csv_refuse(&f, "out of memory");
   }
   lag_csv_close(&f);

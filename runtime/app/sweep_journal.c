@@ -10,19 +10,14 @@
 #include "io/posix.h"
 #include "numeric/fnv1a.h"
 
-static uint64_t hash_numbers(uint64_t h, long long n, const double *x) {
-  for (long long i = 0; i < n; i++) h = lag_hash_number(h, x[i]);
-  return h;
-}
-
 static uint64_t hash_variant(uint64_t h, const SweepApp *s, const SweepVariant *v) {
   const lag_sim *sim = v->like;
   unsigned long long model = lag_sim_signature(sim);
   h = lag_fnv1a(h, (const char *)&model, sizeof model);
-  h = hash_numbers(h, sim->scene->model->np, sim->p);
-  h = hash_numbers(h, sim->pb.n, sim->start);
-  h = hash_numbers(h, sim->scene->model->nu, sim->hold);
-  h = hash_numbers(h, lag_sim_method(sim)->noptions, lag_sim_options(sim));
+  h = lag_hash_numbers(h, sim->scene->model->np, sim->p);
+  h = lag_hash_numbers(h, sim->pb.n, sim->start);
+  h = lag_hash_numbers(h, sim->scene->model->nu, sim->hold);
+  h = lag_hash_numbers(h, lag_sim_method(sim)->noptions, lag_sim_options(sim));
   for (int k = 0; k < s->sweep.nmeasures; k++) h = lag_hash_text(h, v->measure[k]);
   return h;
 }
@@ -41,13 +36,13 @@ uint64_t lag_sweep_signature(const SweepApp *s) {
   /* sines and sums have other last digits */
   uint64_t h = lag_hash_text(lag_hash_text(LAG_FNV1A_START, LAG_PRECISION), s->app->program->lanes_4 ? "lanes" : "");
   for (int v = 0; v < s->sweep.nvariants; v++) h = hash_variant(h, s, &s->variants[v]);
-  h = s->times ? hash_numbers(h, s->sweep.nrows, s->times)
+  h = s->times ? lag_hash_numbers(h, s->sweep.nrows, s->times)
                : lag_hash_text(h, s->app->args.section ? s->app->args.section : "");
-  h = hash_numbers(h, sizeof numbers / sizeof *numbers, numbers);
+  h = lag_hash_numbers(h, sizeof numbers / sizeof *numbers, numbers);
   for (const Factor *f = p->factor; f < p->factor + p->n; f++) {
     const double range[] = {f->kind, f->a, f->b, (double)f->n};
-    h = hash_numbers(lag_hash_text(h, f->name), sizeof range / sizeof *range, range);
-    if (f->list) h = hash_numbers(h, f->n, f->list);
+    h = lag_hash_numbers(lag_hash_text(h, f->name), sizeof range / sizeof *range, range);
+    if (f->list) h = lag_hash_numbers(h, f->n, f->list);
   }
   return h;
 }

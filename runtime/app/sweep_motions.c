@@ -17,9 +17,7 @@ static int choose_times(SweepApp *s) {
   const Args *a = &app->args;
   double every = app->scene->every > 0 ? app->scene->every : fabs(app->until - app->scene->t0) / 1000,
          dir = app->until < app->scene->t0 ? -1 : 1;
-  if (a->every && !lag_args_number(a, "--every", a->every, "--every 0.01", &every)) return EXIT_USAGE;
-  if (!(every > 0))
-    return lag_app_error(a, "--every %s: the time between rows must be positive, for example --every 0.01", a->every);
+  if (lag_args_every(a, &every)) return EXIT_USAGE;
   double grid[3] = {app->scene->t0, every}, first = isnan(app->skip) ? 0 : ceil(lag_app_row_at(app, grid, app->skip)),
          n = floor(lag_app_row_at(app, grid, app->until)) + 1 - first;
   if (n * s->sweep.width > MOST_NUMBERS)

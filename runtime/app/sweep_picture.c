@@ -65,7 +65,6 @@ int lag_sweep_picture_check(SweepApp *s) {
 /* Rows of a picture, and where they go. */
 typedef struct Drawing {
   SweepApp *s;
-  char title[300];
   Table table;   /* of curves, or of a matrix: names that vary, and measures */
   double *value; /* of a map: the first measure, [ny * nx] */
 } Drawing;
@@ -97,13 +96,13 @@ static int read_table(Drawing *d) {
   return lag_sweep_each_row(d->s, take_row, d);
 }
 
-static int draw_curves(const char *path, void *drawing) {
+static int draw_curves(const Picture *picture, void *drawing) {
   Drawing *d = drawing;
   int n = d->s->sweep.nmeasures, *columns = calloc(2 * (size_t)n + 1, sizeof *columns);
   PlottedCurves curves = {.n = n, .x = columns, .y = columns ? columns + n : NULL, .xlog = is_log(&d->s->plan, 0)};
   int rc = columns ? read_table(d) : -1;
   for (int k = 0; k < n && columns; k++) curves.y[k] = k + 1;
-  if (rc == 0) rc = lag_svg_write(path, &d->table, d->title, &curves);
+  if (rc == 0) lag_svg_write(picture, &d->table, &curves);
   lag_free_all(d->table.data, columns);
   return rc;
 }
@@ -189,7 +188,7 @@ static int add_crossings(Drawing *d, const RunClasses *c) {
              : lag_sweep_branches_draw(d->s, &d->table, 1 + c->n, period, is_log(&d->s->plan, 0));
 }
 
-static int draw_crossings(const char *path, void *drawing) {
+static int draw_crossings(const Picture *picture, void *drawing) {
   Drawing *d = drawing;
   static const int x[CLASSES + 2] = {0}, y[CLASSES + 2] = {1, 2, 3, 4, 5, 6, 7, 8};
   RunClasses c;
@@ -197,31 +196,31 @@ static int draw_crossings(const char *path, void *drawing) {
   const PlottedCurves curves = {.n = c.n + d->table.joined, .x = (int *)x, .y = (int *)y,
                                 .xlog = is_log(&d->s->plan, 0), .ordered = 1, .xname = d->s->table.cols[0].name,
                                 .yname = d->s->motions.cols[drawn_column(d->s)].name};
-  if (rc == 0) rc = lag_svg_write(path, &d->table, d->title, &curves);
+  if (rc == 0) lag_svg_write(picture, &d->table, &curves);
   lag_free_all(d->table.cols, d->table.data, c.value);
   return rc;
 }
 
-static int draw_matrix(const char *path, void *drawing) {
+static int draw_matrix(const Picture *picture, void *drawing) {
   Drawing *d = drawing;
   const SweepPlan *p = &d->s->plan;
   int log[MOST_COLUMNS];
   for (int k = 0; k < p->n; k++) log[k] = is_log(p, k);
   int rc = read_table(d);
-  if (rc == 0) rc = lag_matrix_write(path, &(ScatterMatrix){.table = &d->table, .first = p->n, .log = log}, d->title);
+  if (rc == 0) lag_matrix_write(picture, &(ScatterMatrix){.table = &d->table, .first = p->n, .log = log});
   free(d->table.data);
   return rc;
 }
 
-static int draw_histograms(const char *path, void *drawing) {
+static int draw_histograms(const Picture *picture, void *drawing) {
   Drawing *d = drawing;
   int rc = read_table(d);
-  if (rc == 0) rc = lag_histograms_write(path, &d->table, d->s->plan.n, (int)bars_of(&d->s->app->args), d->title);
+  if (rc == 0) rc = lag_histograms_write(picture, &d->table, d->s->plan.n, (int)bars_of(&d->s->app->args));
   free(d->table.data);
   return rc;
 }
 
-static int draw_map(const char *path, void *drawing) {
+static int draw_map(const Picture *picture, void *drawing) {
   Drawing *d = drawing;
   SweepApp *s = d->s;
   const SweepPlan *p = &s->plan;
@@ -238,16 +237,17 @@ static int draw_map(const char *path, void *drawing) {
                         .ny = ny, .x = axis, .y = axis + nx, .xlog = is_log(p, 0), .ylog = is_log(p, 1),
                         .value = d->value, .xlabel = label[0], .ylabel = label[1],
                         .label = label[2]};
-  if (rc == 0) rc = lag_map_write(path, &map, d->title);
+  if (rc == 0) lag_map_write(picture, &map);
   lag_free_all(axis, d->value);
   return rc;
 }
 
 int lag_sweep_picture(SweepApp *s) {
   Drawing d = {.s = s};
-  snprintf(d.title, sizeof d.title, "%s: %s", s->app->scene->model->name, s->app->scene->name);
+  char title[300];
+  snprintf(title, sizeof title, "%s: %s", s->app->scene->model->name, s->app->scene->name);
   const Args *a = &s->app->args;
-  return a->svg ? lag_app_picture(s->app, a->svg,
+  return a->svg ? lag_app_picture(s->app, a->svg, title,
                                   a->histogram          ? draw_histograms
                                   : a->section          ? draw_crossings
                                   : is_curves(&s->plan) ? draw_curves

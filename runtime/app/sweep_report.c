@@ -197,16 +197,13 @@ static void print_text(SweepApp *s, FILE *f, const Statistics *t, const Failures
 }
 
 static void print_json(SweepApp *s, const Statistics *t, const Failures *bad, long long failed) {
-  Json j = {.f = stdout};
+  Json j = lag_report_json_open(s->app, stdout);
   char why[600];
-  lag_json_begin(&j, NULL, '{');
-  lag_report_json_head(s->app, &j);
   lag_json_counts(&j, {"runs", s->plan.runs}, {"failed", failed});
   lag_json_numbers(&j, {"until", s->sweep.until}, {"seconds", s->seconds});
   lag_json_counts(&j, {"threads", s->sweep.threads}, {"lanes", s->variants[0].lanes.lanes},
                       {"processes", s->sweep.nranks});
-  lag_json_begin(&j, "measures", '{');
-  for (int k = 0; k < s->sweep.nmeasures; k++) {
+  JSON_EACH(&j, "measures", '{', k, s->sweep.nmeasures) {
     lag_json_begin(&j, s->app->measure_names[k], '{');
     lag_json_string(&j, "unit", s->table.cols[s->plan.n + k].unit);
     lag_json_count(&j, "runs", t[k].n);
@@ -217,11 +214,8 @@ static void print_json(SweepApp *s, const Statistics *t, const Failures *bad, lo
     lag_json_string(&j, "none_why", bad->none[k].n ? reason_of(s, bad->none[k].first, k, why, sizeof why) : NULL);
     lag_json_end(&j, '}');
   }
-  lag_json_end(&j, '}');
-  lag_json_begin(&j, "failures", '{');
-  for (int k = 0; k < MOST_KINDS; k++)
+  JSON_EACH(&j, "failures", '{', k, MOST_KINDS)
     if (bad->failed[k].n) lag_json_count(&j, s->table.cols[s->table.ncols - 1].words[k], bad->failed[k].n);
-  lag_json_end(&j, '}');
   lag_json_close(&j);
 }
 
@@ -251,9 +245,7 @@ int lag_sweep_report(SweepApp *s) {
 int lag_sweep_report_part(SweepApp *s) {
   const Args *a = &s->app->args;
   if (a->json) {
-    Json j = {.f = stdout};
-    lag_json_begin(&j, NULL, '{');
-    lag_report_json_head(s->app, &j);
+    Json j = lag_report_json_open(s->app, stdout);
     lag_json_count(&j, "runs", s->plan.runs);
     lag_json_strings(&j, {"part", a->shard}, {"journal", s->journal.path});
     lag_json_count(&j, "made", s->made);

@@ -109,11 +109,8 @@ void lag_report_tangent_json(App *app, Json *out) {
   int n = components(app);
   const double *J = final_tangent(app);
   if (!J) return;
-  lag_json_begin(out, "tangent", '{');
-  for (int i = 0; i < n; i++) {
-    lag_json_begin(out, lag_state_column(app->sim, i).name, '{');
-    for (int j = 0; j < n; j++) lag_json_number(out, lag_state_column(app->sim, j).name, J[i * n + j]);
-    lag_json_end(out, '}');
+  JSON_EACH(out, "tangent", '{', i, n) {
+    JSON_EACH(out, lag_state_column(app->sim, i).name, '{', j, n)
+      lag_json_number(out, lag_state_column(app->sim, j).name, J[i * n + j]);
   }
-  lag_json_end(out, '}');
 }

@@ -21,6 +21,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "kernels/compensated_sum.h"
 #include "core/rhs.h"
 #include "numeric/line_fit.h"
 #include "numeric/quadrature.h"
@@ -150,27 +151,21 @@ static void work_over(lag_sim *s, double a, double b, double *gain) {
   add_piece(s, jump, b, gain);
 }
 
-/* *sum += x with compensation: W. Kahan, Commun. ACM 8 (1965) 40, DOI 10.1145/363707.363723. */
-static void add_compensated(double *sum, double *lost, double x) {
-  double rest = x - *lost, next = *sum + rest;
-  *lost = (next - *sum) - rest;
-  *sum = next;
-}
-
 /* Adds the work from the last look to t, within the step that the method still knows. */
 static void add_work(lag_sim *s, double t) {
   double *gain = s->charge_gain;
-  if (s->run->balanced != 0.0) {
-    work_over(s, s->run->watched, t, gain);
+  Run *r = s->run;
+  if (r->balanced != 0.0) {
+    work_over(s, r->watched, t, gain);
     if (s->scene->model->charges->dry_friction)
-      add_compensated(&s->run->dry_work, &s->run->dry_lost, gain[lag_sim_ncharges(s)]);
+      r->dry_work = lag_compensated_sum(r->dry_work, gain[lag_sim_ncharges(s)], &r->dry_lost);
     for (int k = 0; k < lag_sim_ncharges(s); k++) {
       Charge *c = &s->charges[k];
-      add_compensated(&c->work, &c->lost, c->balanced * gain[k]);
+      c->work = lag_compensated_sum(c->work, c->balanced * gain[k], &c->lost);
       c->through += fabs(c->balanced * gain[k]);
     }
   }
-  s->run->watched = t;
+  r->watched = t;
 }
 
 /* Merges neighbouring bins in pairs. */

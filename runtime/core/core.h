@@ -23,7 +23,7 @@ typedef struct Run {
   double steps, rejected, rhs_calls, systems, iterations, events;
   double watched;        /* charges and their work are known up to this time */
   double balanced;       /* 1: the work of forces on charges is integrated along the run */
-  double dry_work, dry_lost; /* work of dry friction, and the rounding error of that sum */
+  double dry_work, dry_lost; /* work of dry friction, and what its rounding has lost */
   double at_events;      /* change of the energy at events: impacts, constraints that begin to hold, actions */
   double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
   /* rank of the constraints at the start; and, at a singular start, their rank a hundredth away from it */
@@ -54,7 +54,7 @@ typedef struct Charge {
   double step;       /* with steps up to four times as long as this */
   double before;     /* difference at the last look */
   double through;    /* int |P| dt, step by step */
-  double work, lost; /* int P dt, and the rounding error of that sum (Kahan) */
+  double work, lost; /* int P dt, and what its rounding has lost */
   double balanced;   /* 1: P is known and integrated */
   double bins, width, in_bin; /* full bins; samples that fill a bin; samples in the open bin */
   /* means of time, difference and size over each bin; element LAG_BINS: sums over the open bin */
@@ -187,6 +187,7 @@ double lag_equal_step(const lag_sim *s);
 /* saved_state.c: FNV-1a hash that goes on from h with a number, by its value: in memory, numbers of some precisions
  * have bytes without meaning. */
 unsigned long long lag_hash_number(unsigned long long h, double x);
+unsigned long long lag_hash_numbers(unsigned long long h, long long n, const double *x);
 
 /* A number for %s in a message. */
 #define LAG_TEXT(x) lag_number_text((x), (char[64]){0})
@@ -216,6 +217,13 @@ int lag_consistent_start(lag_sim *sim);
 /* accessors.c: out[nout] := outputs of the scene [SI] at y, t; those with multipliers or accelerations are NaN near
  * a singular position of the constraints. LAG_OK, or the status of the failed function. */
 int lag_observe(lag_sim *sim, double t, const double *y, double *out);
+/* parameter_columns.c: out[noutputs] := the outputs in SI, or the state where the scene has none. Adds to a column of
+ * D[noutputs columns]: the outputs, times weight; their derivative by parameter column j. */
+int lag_outputs_at(lag_sim *s, double t, const double *y, double *out);
+int lag_add_outputs(lag_sim *s, double t, const double *y, double weight, double *out, int columns, double *column);
+int lag_outputs_by_parameter(lag_sim *s, double t, const double *y, int j, double *out, int columns, double *column);
+/* M[nq nq] := the symmetric matrix with these entries of its lower triangle. */
+void lag_symmetric_matrix(size_t nq, int n, const lag_entry *at, const double *entry, double *M);
 /* constraint_rank.c: A[n nq] := Jacobian of all constraints by the coordinates at y, t, row-major; unit[nq] :=
  * coordinate scales (lag_scales of lag_kkt.h); mass[nq nq] := M unless NULL. 0, or the model's status; then they are
  * undefined. */
@@ -536,6 +544,9 @@ int lag_is_member(const char *var, const char *family, size_t length);
 int lag_nearest_name(const lag_model *model, const char *name, char *best, size_t nbest);
 /* part := member or component k of the family `name` ("th": "th[1]", "th'": "th[1]'", "r": "r.x"); 0 past the last. */
 int lag_family_member(const lag_model *model, const char *name, int k, char *part, size_t npart);
+/* LAG_EINVAL, after a message: the parts of a family, which one may `use` ("set"); or that of these kinds of names the
+ * model has no such one, and the nearest. */
+int lag_no_such_name(lag_sim *s, const char *name, const char *use, const char *kinds);
 /* The nearest of several names, while they are tried one by one; best: NULL where none is near. */
 typedef struct lag_nearest {
   const char *name, *best;

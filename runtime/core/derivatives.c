@@ -15,21 +15,6 @@ typedef struct Room {
 
 /* ---- Outputs */
 
-/* out[noutputs] in SI. */
-static int outputs_at(lag_sim *s, double t, const double *y, double *out) {
-  if (s->scene->nout) return lag_observe(s, t, y, out);
-  memcpy(out, y, (size_t)s->pb.n * sizeof *out);
-  return LAG_OK;
-}
-
-/* Adds weight times the outputs to a column of D[noutputs columns]. */
-static int add_outputs(lag_sim *s, double t, const double *y, double weight, double *out, int columns,
-                       double *column) {
-  int rc = outputs_at(s, t, y, out);
-  for (int i = 0; i < lag_sim_noutputs(s) && rc == 0; i++) column[i * columns] += weight * out[i];
-  return rc;
-}
-
 static int outputs_by_state(lag_sim *s, double t, const double *y, const Room *w, double *D) {
   int n = s->pb.n, rc = LAG_OK;
   memset(D, 0, (size_t)(lag_sim_noutputs(s) * n) * sizeof *D);
@@ -38,7 +23,7 @@ static int outputs_by_state(lag_sim *s, double t, const double *y, const Room *w
     double h = LAG_DIFFERENCE_PART * lag_difference_scale(&s->pb, y, c);
     LAG_EACH_DIFFERENCE(k) {
       w->y[c] = y[c] + k * h;
-      rc = rc ? rc : add_outputs(s, t, w->y, lag_difference_weight(k) / h, w->out, n, D + c);
+      rc = rc ? rc : lag_add_outputs(s, t, w->y, lag_difference_weight(k) / h, w->out, n, D + c);
     }
     w->y[c] = y[c];
   }
@@ -49,13 +34,7 @@ static int outputs_by_parameters(lag_sim *s, double t, const double *y, const Ro
   const lag_parameter_columns *by = s->pb.by;
   int rc = LAG_OK;
   memset(D, 0, (size_t)(lag_sim_noutputs(s) * by->n) * sizeof *D);
-  for (int j = 0; j < by->n; j++) {
-    LAG_EACH_DIFFERENCE(k) {
-      lag_use_parameters(s, j, k);
-      rc = rc ? rc : add_outputs(s, t, y, lag_difference_weight(k) / by->h[j], w->out, by->n, D + j);
-    }
-    lag_use_parameters(s, 0, 0);
-  }
+  for (int j = 0; j < by->n && rc == LAG_OK; j++) rc = lag_outputs_by_parameter(s, t, y, j, w->out, by->n, D + j);
   return rc;
 }
 
@@ -72,7 +51,7 @@ static int by_inputs(lag_sim *s, double t, const double *y, int of_outputs, cons
     s->signal[c].fn = NULL;
     LAG_EACH_DIFFERENCE(k) {
       pb->hold[c] = u + k * h;
-      rc = rc ? rc : of_outputs ? outputs_at(s, t, y, w->out) : lag_rhs(pb, t, y, w->out);
+      rc = rc ? rc : of_outputs ? lag_outputs_at(s, t, y, w->out) : lag_rhs(pb, t, y, w->out);
       for (int i = 0; i < rows; i++) D[i * nu + c] += lag_difference_weight(k) * w->out[i] / h;
     }
     pb->hold[c] = held;
@@ -110,11 +89,6 @@ static int rates_by_inputs(lag_sim *s, double t, const double *y, const Room *w,
 
 /* ---- The mass matrix */
 
-static void symmetric(int nq, int n, const lag_entry *at, const double *entry, double *M) {
-  memset(M, 0, (size_t)(nq * nq) * sizeof *M);
-  for (int k = 0; k < n; k++) M[at[k].row * nq + at[k].col] = M[at[k].col * nq + at[k].row] = entry[k];
-}
-
 static int mass_matrix(lag_sim *s, double t, const double *y, const Room *w, double *M) {
   lag_problem *pb = &s->pb;
   const lag_model *m = pb->model;
@@ -123,7 +97,7 @@ static int mass_matrix(lag_sim *s, double t, const double *y, const Room *w, dou
   if (!c) return rc ? rc : lag_linearise(pb, t, y, NULL, w->J, M, w->work);
   double *mass = w->J + c->njacobian;
   rc = rc ? rc : c->matrices(m, t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->J, mass, pb->work);
-  if (rc == 0) symmetric(nq, c->nmass, c->mass, mass, M);
+  if (rc == 0) lag_symmetric_matrix((size_t)nq, c->nmass, c->mass, mass, M);
   return rc;
 }
 
@@ -142,7 +116,7 @@ static int at_state(lag_sim *s, lag_quantity of, double t, const double *y, cons
     case LAG_RATES_BY_STATE: return rates_by(s, t, y, 0, w, out);
     case LAG_RATES_BY_INPUTS: return rates_by_inputs(s, t, y, w, out);
     case LAG_RATES_BY_PARAMETERS: return rates_by(s, t, y, 1, w, out);
-    case LAG_OUTPUTS: return outputs_at(s, t, y, out);
+    case LAG_OUTPUTS: return lag_outputs_at(s, t, y, out);
     case LAG_OUTPUTS_BY_STATE: return outputs_by_state(s, t, y, w, out);
     case LAG_OUTPUTS_BY_INPUTS: return by_inputs(s, t, y, 1, w, out);
     case LAG_OUTPUTS_BY_PARAMETERS: return outputs_by_parameters(s, t, y, w, out);

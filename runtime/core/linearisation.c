@@ -9,6 +9,7 @@
 #include "core/core.h"
 #include "core/rhs.h"
 #include "numeric/dense.h"
+#include "numeric/magnitudes.h"
 
 /* Layout of `work`. */
 typedef struct LinearLayout {
@@ -53,12 +54,11 @@ size_t lag_linear_work(const lag_model *m) {
   return most > reverse ? most : reverse;
 }
 
-/* M[nq nq] := the matrix with these entries of its lower triangle. */
-static void dense_mass(const lag_linear *l, size_t nq, const double *mass, double *M) {
+void lag_symmetric_matrix(size_t nq, int n, const lag_entry *at, const double *entry, double *M) {
   memset(M, 0, nq * nq * sizeof(double));
-  for (int k = 0; k < l->nmass; k++) {
-    size_t i = (size_t)l->mass[k].row, j = (size_t)l->mass[k].col;
-    M[i * nq + j] = M[j * nq + i] = mass[k];
+  for (int k = 0; k < n; k++) {
+    size_t i = (size_t)at[k].row, j = (size_t)at[k].col;
+    M[i * nq + j] = M[j * nq + i] = entry[k];
   }
 }
 
@@ -74,7 +74,7 @@ static int linearise(lag_problem *pb, double t, const double *y, const double *a
   if (rc) return rc;
   memset(dr, 0, (nq + (size_t)m->nz) * width * sizeof(double));
   for (int k = 0; k < l->ndr; k++) dr[(size_t)l->dr[k].row * width + (size_t)l->dr[k].col] = p.dr[k];
-  dense_mass(l, nq, p.mass, p.M);
+  lag_symmetric_matrix(nq, l->nmass, l->mass, p.mass, p.M);
   return LAG_OK;
 }
 
@@ -115,10 +115,8 @@ double lag_difference_scale(lag_problem *pb, const double *y, int k) {
   double size = component_magnitude(pb, y, k);
   if (k >= pb->nq || !(size > 1)) return size;
   const lag_var *q = &pb->model->q[k];
-  int is_angle =
-      q->periodic || strcmp(q->unit, "rad") == 0 || strcmp(q->unit, "deg") == 0 || strcmp(q->unit, "rev") == 0;
   /* a coordinate without unit may be an angle that has turned often */
-  return is_angle ? 1 : q->unit[0] ? size : sqrt(size);
+  return lag_is_angle(q->periodic, q->unit) ? 1 : q->unit[0] ? size : sqrt(size);
 }
 
 /* column[n - nq] := derivative of rates by component k of the state, or by parameter k - n, with `part` of the step, by
@@ -275,6 +273,6 @@ int lag_input_jacobian(lag_problem *pb, double t, const double *y, double *J, do
   rc = rc ? rc : in->eval(in, t, y, y + nq, y + 2 * nq, pb->p, pb->u, p.rate + nq, p.part, p.mass, pb->work);
   memset(J, 0, (nq + (size_t)m->nz) * nu * sizeof *J);
   for (int k = 0; k < in->n; k++) J[(size_t)in->at[k].row * nu + (size_t)in->at[k].col] = p.part[k];
-  dense_mass(l, nq, p.mass, p.M);
+  lag_symmetric_matrix(nq, l->nmass, l->mass, p.mass, p.M);
   return rc ? rc : lag_solve_dense(nq, nu, p.M, J) ? LAG_ESINGULAR : LAG_OK;
 }

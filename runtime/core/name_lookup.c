@@ -146,3 +146,13 @@ int lag_nearest_name(const lag_model *m, const char *name, char *best, size_t nb
     }
   return best[0] != '\0';
 }
+
+int lag_no_such_name(lag_sim *s, const char *name, const char *use, const char *kinds) {
+  const lag_model *m = s->scene->model;
+  char near[64];
+  if (lag_family_member(m, name, 0, near, sizeof near))
+    return lag_fail(s, LAG_EINVAL, "%s has parts: %s %s, and so on", name, use, near);
+  int is = lag_nearest_name(m, name, near, sizeof near);
+  return lag_fail(s, LAG_EINVAL, "%s: no such %s in model %s%s%s%s", name, kinds, m->name, is ? "; did you mean " : "",
+                  near, is ? "?" : "");
+}

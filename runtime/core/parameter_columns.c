@@ -204,20 +204,14 @@ static const char *bare_name(const char *name, char *s, size_t n) {
 
 static int find_target(lag_sim *s, const char *name, Target *of) {
   const lag_var *var;
-  char bare[128], near[64];
+  char bare[128];
   const lag_model *m = s->scene->model;
   of->kind = lag_find_name(m, bare_name(name, bare, sizeof bare), &of->index, &var);
   if (of->kind == LAG_IS_P && strcmp(bare, name) != 0)
     return lag_fail(s, LAG_EINVAL, "%s: %s is a parameter, the same at all times; leave (0) out", name, bare);
   if (of->kind == LAG_IS_U)
     return lag_fail(s, LAG_EINVAL, "%s is an input; name the parameters of its formula, or make it a parameter", bare);
-  if (of->kind == LAG_IS_NOTHING && lag_family_member(m, bare, 0, near, sizeof near))
-    return lag_fail(s, LAG_EINVAL, "%s has parts: name %s, and so on", bare, near);
-  if (of->kind == LAG_IS_NOTHING)
-    return lag_nearest_name(m, bare, near, sizeof near)
-               ? lag_fail(s, LAG_EINVAL, "%s: no such parameter or coordinate in model %s; did you mean %s?", bare,
-                          m->name, near)
-               : lag_fail(s, LAG_EINVAL, "%s: no such parameter or coordinate in model %s", bare, m->name);
+  if (of->kind == LAG_IS_NOTHING) return lag_no_such_name(s, bare, "name", "parameter or coordinate");
   if (of->kind == LAG_IS_V) of->index += m->nq;
   if (of->kind == LAG_IS_Z) of->index += 2 * m->nq;
   return LAG_OK;
@@ -331,17 +325,25 @@ int lag_action_by_parameters(lag_sim *s, int event, double *after, double *chang
   return rc;
 }
 
-/* out[nout] := outputs of the scene; or the state where it has none. */
-static int outputs_at(lag_sim *s, const double *y, double *out) {
-  if (s->scene->nout) return lag_observe(s, s->run->t, y, out);
+int lag_outputs_at(lag_sim *s, double t, const double *y, double *out) {
+  if (s->scene->nout) return lag_observe(s, t, y, out);
   memcpy(out, y, (size_t)s->pb.n * sizeof *out);
   return LAG_OK;
 }
 
-/* Adds weight/h times outputs to column c of D. */
-static int add_outputs(lag_sim *s, const double *y, double weight, double *out, int c, double *D) {
-  int nout = lag_sim_noutputs(s), rc = outputs_at(s, y, out);
-  for (int i = 0; i < nout; i++) D[i * s->tangent_columns + c] += weight * out[i];
+int lag_add_outputs(lag_sim *s, double t, const double *y, double weight, double *out, int columns, double *column) {
+  int rc = lag_outputs_at(s, t, y, out);
+  for (int i = 0; i < lag_sim_noutputs(s) && rc == 0; i++) column[i * columns] += weight * out[i];
+  return rc;
+}
+
+int lag_outputs_by_parameter(lag_sim *s, double t, const double *y, int j, double *out, int columns, double *column) {
+  int rc = LAG_OK;
+  LAG_EACH_DIFFERENCE(k) {
+    lag_use_parameters(s, j, k);
+    rc = rc ? rc : lag_add_outputs(s, t, y, lag_difference_weight(k) / s->pb.by->h[j], out, columns, column);
+  }
+  lag_use_parameters(s, 0, 0);
   return rc;
 }
 
@@ -361,20 +363,9 @@ static int outputs_along(lag_sim *s, const double *Y, int c, double *y, double *
   LAG_EACH_DIFFERENCE(k) {
     for (int i = 0; i < n; i++) y[i] = s->now[i] + k * h * Y[i * columns + c];
     if (s->scene->nexact) move_begin(s, c, k * h);
-    rc = rc ? rc : add_outputs(s, y, lag_difference_weight(k) / h, out, c, D);
+    rc = rc ? rc : lag_add_outputs(s, s->run->t, y, lag_difference_weight(k) / h, out, columns, D + c);
     memcpy(s->begin, kept, (size_t)n * sizeof *kept);
   }
-  return rc;
-}
-
-static int outputs_by_parameter(lag_sim *s, int j, double *out, double *D) {
-  const lag_parameter_columns *by = s->pb.by;
-  int rc = LAG_OK;
-  LAG_EACH_DIFFERENCE(k) {
-    lag_use_parameters(s, j, k);
-    rc = rc ? rc : add_outputs(s, s->now, lag_difference_weight(k) / by->h[j], out, by->column[j], D);
-  }
-  lag_use_parameters(s, 0, 0);
   return rc;
 }
 
@@ -386,7 +377,8 @@ int lag_sim_output_sensitivity(lag_sim *s, const double *Y, double *D) {
   if (!y) return lag_fail(s, LAG_ENOMEM, "out of memory");
   memset(D, 0, (size_t)(nout * columns) * sizeof *D);
   for (int c = 0; c < columns && rc == LAG_OK; c++) rc = outputs_along(s, Y, c, y, y + n, D);
-  for (int j = 0; s->pb.by && j < s->pb.by->n && rc == LAG_OK; j++) rc = outputs_by_parameter(s, j, y + n, D);
+  for (int j = 0; s->pb.by && j < s->pb.by->n && rc == LAG_OK; j++)
+    rc = lag_outputs_by_parameter(s, s->run->t, s->now, j, y + n, columns, D + s->pb.by->column[j]);
   for (int i = 0; i < nout; i++)
     for (int c = 0; c < columns; c++) D[i * columns + c] /= lag_sim_output_info(s, i, NULL, 0, NULL, 0);
   free(y);

@@ -20,6 +20,11 @@ unsigned long long lag_hash_number(unsigned long long h, double x) {
   return lag_fnv1a(h, (const char *)all, sizeof all);
 }
 
+unsigned long long lag_hash_numbers(unsigned long long h, long long n, const double *x) {
+  for (long long i = 0; i < n; i++) h = lag_hash_number(h, x[i]);
+  return h;
+}
+
 /* The seal of x[nsaved], whose own seal is not counted: 52 bits of a hash of its numbers, the signature, the
  * method's options and the inputs that are functions of the caller. */
 static double seal_of(const lag_sim *s, const double *x) {
@@ -27,7 +32,7 @@ static double seal_of(const lag_sim *s, const double *x) {
   unsigned long long h = lag_sim_signature(s);
 
   for (size_t i = 0; i < s->nsaved; i++) h = i == seal ? h : lag_hash_number(h, x[i]);
-  for (int i = 0; s->options && i < s->method->noptions; i++) h = lag_hash_number(h, s->options[i]);
+  if (s->options) h = lag_hash_numbers(h, s->method->noptions, s->options);
   for (int i = 0; i < s->scene->model->nu; i++) h = lag_hash_number(h, s->signal[i].fn != NULL);
   return (double)(h >> 12);
 }

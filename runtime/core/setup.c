@@ -329,18 +329,12 @@ static const char *rate_of(const lag_model *m, const char *name) {
 static int unknown_name(lag_sim *s, const char *name) {
   const lag_model *m = s->scene->model;
   const char *of = name[0] ? rate_of(m, name) : NULL;
-  char near[64];
   if (of)
     return lag_fail(
         s, LAG_EINVAL,
         "%s: the rate of %s follows from the equations of model %s: set %s, or where H is given its momentum", name, of,
         m->name, of);
-  if (lag_family_member(m, name, 0, near, sizeof near))
-    return lag_fail(s, LAG_EINVAL, "%s has parts: set %s, and so on", name, near);
-  return lag_nearest_name(m, name, near, sizeof near)
-             ? lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s; did you mean %s?", name,
-                        m->name, near)
-             : lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s", name, m->name);
+  return lag_no_such_name(s, name, "set", "parameter, coordinate or input");
 }
 
 /* A value in the declared unit of var, converted to SI; the offset of a unit does not apply to rates. */

@@ -119,6 +119,12 @@ int lag_csv_row(CsvFile *f) {
                         f->ncols);
 }
 
+int lag_csv_number(const CsvFile *f, int i, const char *name, double *x) {
+  char *end;
+  *x = strtod(f->field[i], &end);
+  return *f->field[i] && !*end ? 0 : lag_csv_refuse(f, "%s: `%s` is no number", name, f->field[i]);
+}
+
 void lag_csv_close(CsvFile *f) {
   free(f->names);
   free(f->text);

@@ -15,6 +15,8 @@ typedef struct CsvFile {
 
 /* Reads the file and its names. Returns 0, or -1 after a message in why[size]; lag_csv_close in either case. */
 int lag_csv_open(CsvFile *f, const char *path, char *why, size_t size);
+/* *x := the number in field i of the row. -1 after a message with this name. */
+int lag_csv_number(const CsvFile *f, int i, const char *name, double *x);
 void lag_csv_close(CsvFile *f);
 /* Fields of the next line that is not blank, without quotes and the spaces around them. 1; 0: no more; -1: refused. */
 int lag_csv_row(CsvFile *f);

@@ -98,9 +98,7 @@ static int x_is_index(const Table *t, const Animation *a) {
 static void put_marks(Json *j, const Marks *marks, double t0, double tick) {
   if (!marks->n) return;
   lag_json_begin(j, "marks", '{');
-  lag_json_begin(j, "names", '[');
-  for (int i = 0; i < marks->ntracks; i++) lag_json_string(j, NULL, marks->names[i]);
-  lag_json_end(j, ']');
+  JSON_EACH(j, "names", '[', i, marks->ntracks) lag_json_string(j, NULL, marks->names[i]);
   lag_json_begin(j, "at", '[');
   for (size_t i = 0; i < marks->n; i++) {
     lag_json_count(j, NULL, (long long)nearbyint((marks->at[i].t - t0) / tick));
@@ -112,15 +110,12 @@ static void put_marks(Json *j, const Marks *marks, double t0, double tick) {
 }
 
 static void put_indices(Json *j, const PageColumns *c, const int *of, int n) {
-  lag_json_begin(j, NULL, '[');
-  for (int k = 0; k < n; k++) lag_json_count(j, NULL, of[k] < 0 ? -1 : c->index[of[k]] - 1);
-  lag_json_end(j, ']');
+  JSON_EACH(j, NULL, '[', k, n) lag_json_count(j, NULL, of[k] < 0 ? -1 : c->index[of[k]] - 1);
 }
 
 /* Kind, role, text, count, and indices of page columns. */
 static void put_shapes(Json *j, const Animation *a, const PageColumns *c) {
-  lag_json_begin(j, "shapes", '[');
-  for (int i = 0; i < a->nshapes; i++) {
+  JSON_EACH(j, "shapes", '[', i, a->nshapes) {
     const lag_shape *s = &a->shapes[i];
     lag_json_begin(j, NULL, '[');
     lag_json_string(j, NULL, s->kind);
@@ -133,13 +128,10 @@ static void put_shapes(Json *j, const Animation *a, const PageColumns *c) {
     put_indices(j, c, s->turn, 4);
     lag_json_end(j, ']');
   }
-  lag_json_end(j, ']');
-  lag_json_begin(j, "cols", '[');
-  for (int k = 0; k < c->n; k++) {
+  JSON_EACH(j, "cols", '[', k, c->n) {
     lag_json_number(j, NULL, c->at[k].zero);
     lag_json_number(j, NULL, c->at[k].scale);
   }
-  lag_json_end(j, ']');
 }
 
 /* Times between rows in ticks, then a line a frame: the columns that change. */
@@ -174,9 +166,8 @@ static void put_data(FILE *f, const Table *t, const Animation *a, const PageColu
   size_t n = t->nrows;
   double t0 = n ? lag_table_cell(t, 0, 0) : 0, t1 = n ? lag_table_cell(t, n - 1, 0) : 0,
          tick = t1 != t0 ? (t1 - t0) / TICKS : 1;
-  Json j = {.f = f};
+  Json j = lag_json_open(f);
 
-  lag_json_begin(&j, NULL, '{');
   lag_json_numbers(&j, {"t0", t0}, {"tick", tick}, {"t1", t1}, {"horizon", t->certain ? t->horizon : NAN},
                        {"speed", choose_speed(t, fabs(t1 - t0))});
   lag_json_count(&j, "frames", (long long)n);

@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 
+#include "app/options.def" /* OptionTakes */
 #include "io/outfile.h"
 #include "lag.h"
 
@@ -102,8 +103,28 @@ typedef struct PlottedCurves {
   PictureNote *note; /* [nnotes], or NULL */
 } PlottedCurves;
 
-/* Writes the picture as SVG. -1 with errno set. */
-int lag_svg_write(const char *path, const Table *t, const char *title, const PlottedCurves *d);
+/* What the command line asks of a picture: PICTURE_FLAG and PICTURE_TEXT of the table of options. */
+typedef struct PictureOptions {
+#define PICTURE_FLAG(f) int f;
+#define PICTURE_TEXT(f) const char *f;
+#define OWN_FLAG TO
+#define OWN_TEXT TO
+#define OWN_LIST TO
+#define TO(f)
+#define LAGC(...)
+#define BOTH(name, brief, value, takes, hint, commands, analyses, field, text) field
+#define SIMULATOR(name, value, takes, analyses, field, text) field
+#include "app/options.def"
+} PictureOptions;
+
+/* An SVG picture under way: writers begin it by lag_svg_head (svg_panel.h); its file ends with "</svg>". */
+typedef struct Picture {
+  FILE *f;
+  const char *title;
+  const PictureOptions *options;
+} Picture;
+
+void lag_svg_write(const Picture *p, const Table *t, const PlottedCurves *d);
 
 /* A value over two others. */
 typedef struct ValueMap {
@@ -114,8 +135,7 @@ typedef struct ValueMap {
   const char *xlabel, *ylabel, *label;
 } ValueMap;
 
-/* Writes the map as SVG. -1 with errno set. */
-int lag_map_write(const char *path, const ValueMap *m, const char *title);
+void lag_map_write(const Picture *p, const ValueMap *m);
 
 /* Columns from `first` on over those before, and over each other. */
 typedef struct ScatterMatrix {
@@ -124,11 +144,10 @@ typedef struct ScatterMatrix {
   const int *log;       /* [first] 1: the column holds decimal logarithms */
 } ScatterMatrix;
 
-/* Writes the matrix as SVG. -1 with errno set. */
-int lag_matrix_write(const char *path, const ScatterMatrix *m, const char *title);
+void lag_matrix_write(const Picture *p, const ScatterMatrix *m);
 
-/* Writes histograms of the columns from `first` on, of `parts` bars each, as SVG. -1 with errno set. */
-int lag_histograms_write(const char *path, const Table *t, int first, int parts, const char *title);
+/* Writes histograms of the columns from `first` on, of `parts` bars each. -1 with errno set. */
+int lag_histograms_write(const Picture *p, const Table *t, int first, int parts);
 
 /* Prints the first few curves as text (braille dots). */
 void lag_sketch_write(FILE *f, const Table *t, const PlottedCurves *d);
@@ -164,9 +183,8 @@ static inline int lag_shape_has_length(const lag_shape *s) { return s->kind[0] !
 /* Writes an HTML page that plays the table. -1 with errno set. */
 int lag_html_write(const char *path, const Table *t, const char *title, const Animation *a);
 
-/* Writes an SVG picture of the shapes at some instants, at equal times from the first row to the last. -1 with errno
- * set. */
-int lag_drawing_write(const char *path, const Table *t, const char *title, const Animation *a, int instants);
+/* Writes the shapes at --drawing N instants, at equal times from the first row to the last. -1 with errno set. */
+int lag_drawing_write(const Picture *p, const Table *t, const Animation *a);
 
 /* JSON writer: commas between members are its own. A name is NULL for elements of an array. */
 typedef struct Json {
@@ -190,8 +208,16 @@ void lag_json_truth(Json *j, const char *name, int yes);
 /* x[n] as an array; x[rows][columns] as one of arrays. */
 void lag_json_row(Json *j, const char *name, int n, const double *x);
 void lag_json_matrix(Json *j, const char *name, int rows, int columns, const double *x);
-/* Ends the outermost object, and its line. */
+/* The outermost object: its begin; its end, and that of its line. */
+Json lag_json_open(FILE *f);
 void lag_json_close(Json *j);
+/* A member with n elements, each written by the statement behind, and an array of objects with the members written
+ * there: JSON_EACH(j, "names", '[', i, n) lag_json_string(j, NULL, name[i]). */
+#define JSON_EACH(j, name, bracket, i, n) \
+  for (int i = (lag_json_begin(j, name, bracket), 0); i < (n) || (lag_json_end(j, (bracket) + 2), 0); i++)
+#define JSON_OBJECTS(j, name, i, n) \
+  for (int i = (lag_json_begin(j, name, '['), 0); \
+       i < (n) ? (lag_json_begin(j, NULL, '{'), 1) : (lag_json_end(j, ']'), 0); lag_json_end(j, '}'), i++)
 
 /* Several members: lag_json_numbers(j, {"t", t}, {"x", x}). */
 #define JSON_LIST(Each, ...) (const Each[]){__VA_ARGS__, {NULL, 0}}

@@ -65,15 +65,17 @@ void lag_json_truth(Json *j, const char *name, int yes) {
 }
 
 void lag_json_row(Json *j, const char *name, int n, const double *x) {
-  lag_json_begin(j, name, '[');
-  for (int i = 0; i < n; i++) lag_json_number(j, NULL, x[i]);
-  lag_json_end(j, ']');
+  JSON_EACH(j, name, '[', i, n) lag_json_number(j, NULL, x[i]);
 }
 
 void lag_json_matrix(Json *j, const char *name, int rows, int columns, const double *x) {
-  lag_json_begin(j, name, '[');
-  for (int i = 0; i < rows; i++) lag_json_row(j, NULL, columns, x + i * columns);
-  lag_json_end(j, ']');
+  JSON_EACH(j, name, '[', i, rows) lag_json_row(j, NULL, columns, x + i * columns);
+}
+
+Json lag_json_open(FILE *f) {
+  Json j = {.f = f};
+  lag_json_begin(&j, NULL, '{');
+  return j;
 }
 
 void lag_json_close(Json *j) {

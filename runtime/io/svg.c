@@ -325,7 +325,8 @@ static const char *names_of(const Table *t, const PlottedCurves *d, const Column
   return s;
 }
 
-static void against_time(FILE *f, const Table *t, const char *title, const PlottedCurves *d) {
+static void against_time(const Picture *picture, const Table *t, const PlottedCurves *d) {
+  FILE *f = picture->f;
   const Column *first[MOST_PANELS];
   char xlabel[176], names[300];
   int n = panels_of(t, d, first);
@@ -335,7 +336,7 @@ static void against_time(FILE *f, const Table *t, const char *title, const Plott
              .ylog = d->ylog,
              .xlabel = xlabel};
   label_of(t->cols[0].name, t->cols[0].unit, p.w, xlabel, sizeof xlabel);
-  lag_svg_head(f, LEFT + (int)p.w + legend_width(t, d), TOP + (int)h * n + GAP * (n - 1) + BOTTOM, title);
+  lag_svg_head(picture, LEFT + (int)p.w + legend_width(t, d), TOP + (int)h * n + GAP * (n - 1) + BOTTOM);
   lag_table_range(t, 0, &p.x0, &p.x1);
   lag_widen_range(&p.x0, &p.x1, 1e-12, 0);
   for (int k = 0; k < n; k++) {
@@ -403,7 +404,8 @@ static void axis_label(const Table *t, int n, const int *cols, const char *name,
   label_of(n == 1 ? t->cols[cols[0]].name : name, unit, room, s, size);
 }
 
-static void paths(FILE *f, const Table *t, const char *title, const PlottedCurves *drawn) {
+static void paths(const Picture *picture, const Table *t, const PlottedCurves *drawn) {
+  FILE *f = picture->f;
   PlottedCurves copy = *drawn, *d = &copy;
   char xlabel[176], ylabel[176];
   int x = d->x[0];
@@ -426,9 +428,8 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
   if (x && !d->beneath.value && shares_scale(t, d, &p)) same_scale(&p);
   axis_label(t, d->n, d->x, d->xname, p.w, xlabel, sizeof xlabel);
   axis_label(t, d->n, d->y, d->yname, p.h + 40, ylabel, sizeof ylabel);
-  lag_svg_head(f,
-               d->n > 1 && LEFT + (int)p.w + legend_width(t, d) > WIDTH ? LEFT + (int)p.w + legend_width(t, d) : WIDTH,
-               TOP + (int)p.h + BOTTOM, title);
+  int wide = LEFT + (int)p.w + legend_width(t, d);
+  lag_svg_head(picture, d->n > 1 && wide > WIDTH ? wide : WIDTH, TOP + (int)p.h + BOTTOM);
   lag_svg_axes(f, &p, ylabel, 1);
   if (d->beneath.profile) lag_svg_profile(f, &p, &d->beneath);
   else if (d->beneath.value) lag_svg_levels(f, &p, &d->beneath);
@@ -446,11 +447,7 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
   if (x && !t->points && d->n == 1 && !d->runs) mark_ends(f, &p, t, x, d->y[0], d->beneath.period);
 }
 
-int lag_svg_write(const char *path, const Table *t, const char *title, const PlottedCurves *d) {
-  Outfile o;
-  if (lag_outfile_open(&o, path)) return -1;
-  if (!d->yname || (d->n > 1 && d->x[0] == 0)) against_time(o.f, t, title, d);
-  else paths(o.f, t, title, d);
-  fputs("</svg>\n", o.f);
-  return lag_outfile_close(&o, OUTFILE_KEEP);
+void lag_svg_write(const Picture *p, const Table *t, const PlottedCurves *d) {
+  if (!d->yname || (d->n > 1 && d->x[0] == 0)) against_time(p, t, d);
+  else paths(p, t, d);
 }

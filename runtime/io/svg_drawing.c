@@ -339,24 +339,21 @@ static size_t row_at(const Table *t, double part) {
   return i;
 }
 
-int lag_drawing_write(const char *path, const Table *t, const char *title, const Animation *a, int instants) {
-  Outfile o;
-  View v = {.t = t, .a = a};
+int lag_drawing_write(const Picture *p, const Table *t, const Animation *a) {
+  int instants = atoi(p->options->drawing);
+  FILE *f = p->f;
+  View v = {.t = t, .a = a, .f = f};
   char label[80];
   Ordered *order = malloc(((size_t)a->nshapes + 1) * sizeof *order);
-  if (!order || !t->nrows || lag_outfile_open(&o, path)) {
-    free(order);
-    return -1;
-  }
+  if (!order || !t->nrows) return free(order), -1;
   for (int i = 0; i < a->nshapes; i++)
     v.deep |= a->shapes[i].a[2] >= 0 || a->shapes[i].b[2] >= 0 || a->shapes[i].turn[3] >= 0;
-  v.f = o.f;
   look(&v);
-  lag_svg_head(o.f, WIDTH, HIGH, title);
+  lag_svg_head(p, WIDTH, HIGH);
   snprintf(label, sizeof label, a->unit[0] ? "[%s]" : "%s", a->unit);
   v.panel.xlabel = label;
-  if (!v.deep) lag_svg_axes(o.f, &v.panel, label, 1);
-  fprintf(o.f, "<clipPath id=\"c\"><rect x=\"%.0f\" y=\"%.0f\" width=\"%.0f\" height=\"%.0f\"/></clipPath>\n"
+  if (!v.deep) lag_svg_axes(f, &v.panel, label, 1);
+  fprintf(f, "<clipPath id=\"c\"><rect x=\"%.0f\" y=\"%.0f\" width=\"%.0f\" height=\"%.0f\"/></clipPath>\n"
                "<g clip-path=\"url(#c)\">\n", v.panel.x, v.panel.y, v.panel.w, v.panel.h);
   v.row = t->nrows - 1;
   put_instant(&v, order, 0, 1);
@@ -364,7 +361,7 @@ int lag_drawing_write(const char *path, const Table *t, const char *title, const
     v.row = row_at(t, instants > 1 ? (double)k / (instants - 1) : 1);
     put_instant(&v, order, 1, instants == 1 ? 1 : 0.25 + 0.75 * k / (instants - 1));
   }
-  fputs("</g>\n</svg>\n", o.f);
+  fputs("</g>\n", f);
   free(order);
-  return lag_outfile_close(&o, OUTFILE_KEEP);
+  return 0;
 }

@@ -60,17 +60,12 @@ static void draw_panel(FILE *f, const Table *t, int col, int parts, double y, lo
   lag_svg_text(f, LEFT + BARS_WIDTH, y - 6, "text-anchor=\"end\" fill=\"#666\"", note);
 }
 
-int lag_histograms_write(const char *path, const Table *t, int first, int parts, const char *title) {
-  Outfile o;
+int lag_histograms_write(const Picture *p, const Table *t, int first, int parts) {
   int n = t->ncols - first;
   long long *count = malloc((size_t)parts * sizeof *count);
-  if (!count || lag_outfile_open(&o, path)) {
-    free(count);
-    return -1;
-  }
-  lag_svg_head(o.f, LEFT + BARS_WIDTH + 40, TOP + n * (BARS_HEIGHT + APART) + 10, title);
-  for (int k = 0; k < n; k++) draw_panel(o.f, t, first + k, parts, TOP + k * (BARS_HEIGHT + APART), count);
-  fputs("</svg>\n", o.f);
+  if (!count) return -1;
+  lag_svg_head(p, LEFT + BARS_WIDTH + 40, TOP + n * (BARS_HEIGHT + APART) + 10);
+  for (int k = 0; k < n; k++) draw_panel(p->f, t, first + k, parts, TOP + k * (BARS_HEIGHT + APART), count);
   free(count);
-  return lag_outfile_close(&o, OUTFILE_KEEP);
+  return 0;
 }

@@ -120,23 +120,20 @@ static void put_legend(FILE *f, const Panel *p, const Scale *s, const char *labe
   lag_svg_text(f, x, p->y - 8, "class=\"l\"", label);
 }
 
-int lag_map_write(const char *path, const ValueMap *m, const char *title) {
-  Outfile o;
+void lag_map_write(const Picture *picture, const ValueMap *m) {
+  FILE *f = picture->f;
   Scale s = scale_of(m);
   Panel p = {.x = LEFT, .y = TOP + 20, .w = SIDE, .h = SIDE, .xlog = m->xlog, .ylog = m->ylog, .xlabel = m->xlabel};
-  if (lag_outfile_open(&o, path)) return -1;
   edges(m->nx, m->x, &p.x0, &p.x1);
   edges(m->ny, m->y, &p.y0, &p.y1);
-  lag_svg_head(o.f, LEFT + SIDE + RIGHT, TOP + 20 + SIDE + BOTTOM, title);
-  lag_svg_axes(o.f, &p, m->ylabel, 1);
+  lag_svg_head(picture, LEFT + SIDE + RIGHT, TOP + 20 + SIDE + BOTTOM);
+  lag_svg_axes(f, &p, m->ylabel, 1);
   /* where there is no value */
-  fprintf(o.f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#ddd\"/>\n", p.x, p.y, p.w, p.h);
-  fprintf(o.f, "<g transform=\"translate(%.1f %.1f) scale(%.9g %.9g)\" shape-rendering=\"crispEdges\">\n", p.x, p.y,
+  fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#ddd\"/>\n", p.x, p.y, p.w, p.h);
+  fprintf(f, "<g transform=\"translate(%.1f %.1f) scale(%.9g %.9g)\" shape-rendering=\"crispEdges\">\n", p.x, p.y,
           p.w / m->nx, p.h / m->ny);
-  for (int k = 0, n = s.categories ? s.categories : LEVELS; k < n; k++) put_cells(o.f, m, &s, k);
-  fputs("</g>\n", o.f);
-  if (s.categories) put_legend(o.f, &p, &s, m->label);
-  else if (s.least <= s.most) put_bar(o.f, &p, &s, m->label);
-  fputs("</svg>\n", o.f);
-  return lag_outfile_close(&o, OUTFILE_KEEP);
+  for (int k = 0, n = s.categories ? s.categories : LEVELS; k < n; k++) put_cells(f, m, &s, k);
+  fputs("</g>\n", f);
+  if (s.categories) put_legend(f, &p, &s, m->label);
+  else if (s.least <= s.most) put_bar(f, &p, &s, m->label);
 }

@@ -31,18 +31,17 @@ static void range_of(const Table *t, int col, double *lo, double *hi) {
   lag_widen_range(lo, hi, 1e-12, 0.06);
 }
 
-int lag_matrix_write(const char *path, const ScatterMatrix *m, const char *title) {
+void lag_matrix_write(const Picture *picture, const ScatterMatrix *m) {
+  FILE *f = picture->f;
   const Table *t = m->table;
   int rows = t->ncols - m->first, columns = t->ncols - 1;
   double w = fmin(WIDEST, (double)(MOST_WIDTH - GAP * (columns - 1)) / columns), h = 0.8 * w,
          part = (double)MOST_POINTS / (double)t->nrows;
   char xlabel[sizeof(Column) + 4], ylabel[sizeof(Column) + 4], note[80];
-  Outfile o;
-  if (lag_outfile_open(&o, path)) return -1;
-  lag_svg_head(o.f, LEFT + (int)((w + GAP) * columns) + 20, TOP + 20 + (int)((h + GAP) * rows) + BOTTOM, title);
+  lag_svg_head(picture, LEFT + (int)((w + GAP) * columns) + 20, TOP + 20 + (int)((h + GAP) * rows) + BOTTOM);
   if (part < 1) {
     snprintf(note, sizeof note, "about %d of %zu runs, evenly chosen", MOST_POINTS, t->nrows);
-    lag_svg_text(o.f, LEFT, TOP, "fill=\"#666\"", note);
+    lag_svg_text(f, LEFT, TOP, "fill=\"#666\"", note);
   }
   for (int row = 0; row < rows; row++)
     for (int x = 0; x < m->first + row; x++) {
@@ -53,9 +52,7 @@ int lag_matrix_write(const char *path, const ScatterMatrix *m, const char *title
                  .xlabel = lag_column_label(&t->cols[x], xlabel, sizeof xlabel)};
       range_of(t, x, &p.x0, &p.x1);
       range_of(t, y, &p.y0, &p.y1);
-      lag_svg_axes(o.f, &p, x ? NULL : lag_column_label(&t->cols[y], ylabel, sizeof ylabel), last);
-      dots(o.f, &p, t, x, y, part);
+      lag_svg_axes(f, &p, x ? NULL : lag_column_label(&t->cols[y], ylabel, sizeof ylabel), last);
+      dots(f, &p, t, x, y, part);
     }
-  fputs("</svg>\n", o.f);
-  return lag_outfile_close(&o, OUTFILE_KEEP);
 }

@@ -163,21 +163,20 @@ void lag_svg_axes(FILE *f, const Panel *p, const char *ylabel, int last) {
   fputs(p->ylog ? ", logarithmic</text>\n" : "</text>\n", f);
 }
 
-void lag_svg_large_head(FILE *f, int width, int height, int size, const char *title) {
+void lag_svg_large_head(const Picture *p, int width, int height, int size) {
   char attributes[64];
+  FILE *f = p->f;
   fprintf(f,
           "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" "
           "font-family=\"DejaVu Sans, Helvetica, sans-serif\" font-size=\"%d\" fill=\"#333\">\n<title>",
           width, height, width, height, size);
-  lag_write_markup(f, title);
+  lag_write_markup(f, p->title);
   fprintf(f,
           "</title>\n<style>.g{stroke:#e4e4e4;stroke-width:1;fill:none}.l{font-size:15px}</style>\n"
           "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
           width, height);
   snprintf(attributes, sizeof attributes, "font-size=\"%d\" font-weight=\"bold\"", size < 17 ? 17 : size);
-  lag_svg_text(f, LEFT, 26, attributes, title);
+  lag_svg_text(f, LEFT, 26, attributes, p->title);
 }
 
-void lag_svg_head(FILE *f, int width, int height, const char *title) {
-  lag_svg_large_head(f, width, height, 14, title);
-}
+void lag_svg_head(const Picture *p, int width, int height) { lag_svg_large_head(p, width, height, 14); }

@@ -20,9 +20,9 @@ typedef struct Panel {
 double lag_panel_x(const Panel *p, double x);
 double lag_panel_y(const Panel *p, double y);
 
-/* The beginning of a file: size, title, styles; lag_svg_large_head: with text of this size. The end is "</svg>". */
-void lag_svg_head(FILE *f, int width, int height, const char *title);
-void lag_svg_large_head(FILE *f, int width, int height, int size, const char *title);
+/* The beginning of a picture: size, title, styles; lag_svg_large_head: with text of this size. */
+void lag_svg_head(const Picture *p, int width, int height);
+void lag_svg_large_head(const Picture *p, int width, int height, int size);
 void lag_svg_text(FILE *f, double x, double y, const char *attributes, const char *s);
 /* svg_levels.c: level curves of a value over the panel; its curve along y = 0; [y0, y1] widened to the latter's
  * lowest value, and by half upwards. */

@@ -88,3 +88,21 @@ void lag_gauss_jordan(int n, double *A, double *x, double *pivot, double least) 
     x[i] = pivot[i] < 0 ? x[i] : x[i] / A[i * n + (int)pivot[i]];
   }
 }
+
+/* C[n m] := A B, whose elements of A in row i are `right` apart, and rows `down`. */
+static void multiply(int n, int k, int m, const double *A, int down, int right, const double *B, double *C) {
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < m; j++) {
+      double sum = 0;
+      for (int l = 0; l < k; l++) sum += A[i * down + l * right] * B[l * m + j];
+      C[i * m + j] = sum;
+    }
+}
+
+void lag_multiply(int n, int k, int m, const double *A, const double *B, double *C) {
+  multiply(n, k, m, A, k, 1, B, C);
+}
+
+void lag_multiply_transposed(int n, int k, int m, const double *A, const double *B, double *C) {
+  multiply(n, k, m, A, 1, n, B, C);
+}

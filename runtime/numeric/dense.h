@@ -21,6 +21,9 @@ static inline double lag_columns_dot(int rows, int cols, const double *A, int i,
   for (int r = 0; r < rows; r++) sum += A[r * cols + i] * A[r * cols + j];
   return sum;
 }
+/* C[n m] := A B with A[n k] and B[k m], or A' B with A[k n]. */
+void lag_multiply(int n, int k, int m, const double *A, const double *B, double *C);
+void lag_multiply_transposed(int n, int k, int m, const double *A, const double *B, double *C);
 /* -1, 0 or 1 */
 static inline double lag_sign(double x) { return (x > 0) - (x < 0); }
 

@@ -5,9 +5,12 @@
 #include <math.h>
 #include <string.h>
 
+int lag_is_angle(int periodic, const char *unit) {
+  return periodic || strcmp(unit, "rad") == 0 || strcmp(unit, "deg") == 0 || strcmp(unit, "rev") == 0;
+}
+
 double lag_component_scale(double most, int periodic, const char *unit) {
-  int is_angle = periodic || !unit[0] || strcmp(unit, "rad") == 0 || strcmp(unit, "deg") == 0;
-  return most <= 0 || (most < 1 && is_angle) ? 1 : most;
+  return most <= 0 || (most < 1 && (!unit[0] || lag_is_angle(periodic, unit))) ? 1 : most;
 }
 
 double lag_uneven(int i) {

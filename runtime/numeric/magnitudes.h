@@ -1,6 +1,9 @@
 /* Magnitudes by which states and residuals of constraints are judged. */
 #pragma once
 
+/* Whether a quantity is an angle: declared periodic, or in a unit of angles. */
+int lag_is_angle(int periodic, const char *unit);
+
 /* Scale of a component from the largest magnitude of its unit: 1 where that is 0, and at least 1 for an angle.
  * periodic: it is an angle, as are those in rad, deg or without a unit. */
 double lag_component_scale(double most, int periodic, const char *unit);

@@ -34,7 +34,7 @@ runtime/methods   methods/ core/rhs.h kernels/ numeric/ lag.h lag_model.h lag_ma
 runtime/lanes     lanes/ kernels/ numeric/ methods/adaptive_rk.h methods/taylor.h methods/verlet.h core/core.h lag.h lag_model.h lag_math.h
 runtime/analysis  analysis/ core/ kernels/ numeric/ lag.h lag_model.h
 runtime/evaluator evaluator/ numeric/ lag.h lag_model.h lag_math.h lag_support.h lag_tree.h lag_kkt.h
-runtime/io        io/ numeric/ lag.h lag_model.h
+runtime/io        io/ app/options.def numeric/ lag.h lag_model.h
 runtime/sweep     sweep/ lanes/lane_choice.h lanes/lane_runs.h analysis/measure.h io/posix.h io/csv_file.h numeric/ lag.h lag_model.h
 runtime/app       app/ sweep/ core/ io/ analysis/ numeric/ lag.h lag_model.h
 runtime/gsl       gsl/ lag.h lag_model.h
