@@ -185,8 +185,7 @@ static void emit_strike(const ModelFile *f) {
                  written);
   sb_printf(f->out,
             "\nstatic int strike(const void *self, int row, int input, LAG_REAL t, const LAG_REAL *q, const LAG_REAL "
-            "*v,\n    "
-            "const LAG_REAL *z, const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *v1, LAG_REAL *w) {\n"
+            "*v,\n    const LAG_REAL *z, const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *v1, LAG_REAL *w) {\n"
             "  LAG_REAL g[%u], with[%u];\n"
             "  for (int i = 0; i < %u; i++) g[i] = LAG_C(0.0);\n  for (int i = 0; i < %u; i++) with[i] = u[i];\n"
             "  g[row] = with[input] = LAG_C(1.0);\n  return impact(self, t, q, v, z, p, with, g, v1, w);\n}\n",

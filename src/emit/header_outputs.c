@@ -36,8 +36,7 @@ static void adjoint_step(const Header *h) {
   uint32_t n = u->formulas_at.n;
   header_internal_function(h, u->adjoint, "reverse",
                            arena_printf(h->a,
-                                        "const %s_REAL *a, const %s_REAL *g, %s_REAL *by_y, %s_REAL *by_up, "
-                                        "%s_REAL *d",
+                                        "const %s_REAL *a, const %s_REAL *g, %s_REAL *by_y, %s_REAL *by_up, %s_REAL *d",
                                         R, R, R, R, R),
                            own, out);
   if (n)

@@ -75,10 +75,9 @@ Value multiplier_value(Eval *ev, const AstExpr *x) {
     return refuse(
         b, x->span,
         "multipliers follow from the equations of motion, and cannot stand in them" HELP
-        "`lambda(NAME)` may stand in `observe`, `output` and `expect`, and alone in `constraint ... while "
-        "lambda(NAME) > 0`; "
-        "friction that follows it is `friction NAME on s: mu*abs(lambda(rail))`, or a guide, `guide rail: y = "
-        "0, friction = mu`");
+        "`lambda(NAME)` may stand in `observe`, `output` and `expect`, and alone in `constraint ... while lambda(NAME) "
+        "> 0`; friction that follows it is `friction NAME on s: mu*abs(lambda(rail))`, or a guide, `guide rail: y = 0, "
+        "friction = mu`");
   Span span = ast_expr(b->ast, x->args)->span;
   uint32_t errors = b->diags->errors;
   Name owner = NULL, name = named_constraint(ev, x->args, &owner);

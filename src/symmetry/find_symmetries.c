@@ -258,9 +258,8 @@ static void search_listed(SymmetrySearch *s) {
   s->out->searched = noether_add_family(s, &f);
   s->out->ansatz =
       arena_printf(s->e->m->arena,
-                   "xi affine in the coordinates%s%s, with coefficients in t: %s; F a polynomial of degree %u in "
-                   "the coordinates, "
-                   "with those%s%s, and any function of t alone",
+                   "xi affine in the coordinates%s%s, with coefficients in t: %s; F a polynomial of degree %u in the "
+                   "coordinates, with those%s%s, and any function of t alone",
                    !s->ansatz->whole ? " (turns and stretches of one vector only)" : "", tau_text(s->ansatz),
                    functions_text(s, &f.times, 0, f.times.n), s->ansatz->degree,
                    f.times.n < f.times.ngauge ? " and " : "", functions_text(s, &f.times, f.times.n, f.times.ngauge));
