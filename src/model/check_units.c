@@ -107,14 +107,7 @@ int refuse_point(Eval *ev, AstId operand, const char *why) {
 int point_fits(Eval *ev, const AstExpr *x, AstId operand) {
   static const char *const takes[] = {"if", "min", "max"};
   switch (x->kind) {
-  case AST_ADD:
-  case AST_SUB:
-  case AST_LT:
-  case AST_LE:
-  case AST_GT:
-  case AST_GE:
-  case AST_EQ:
-  case AST_NE:
+  case AST_ADD: case AST_SUB: case AST_LT: case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE:
   case AST_UNIT: return 1;
   case AST_CALL:
     for (size_t i = 0; i < sizeof takes / sizeof *takes; i++)
