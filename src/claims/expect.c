@@ -76,17 +76,15 @@ ExpectResult expect_judge(const Eqns *e, const CaseSymbols *symbols, const Expec
 static void report_unknown(const Eqns *e, const Expect *x, const ExpectResult *r) {
   if (r->missing) {
     diag_error(e->m->diags, x->span,
-               "expect %s is not decided: no proof is found, and no state that was compared shows %s", r->label,
-               r->missing);
-    diag_help(e->m->diags, "state the expectation for one side of the switch alone, or in another form%s",
-              r->inexact ? "; " EXACT_NUMBERS : "");
+               "expect %s is not decided: no proof is found, and no state that was compared shows %s" HELP
+               "state the expectation for one side of the switch alone, or in another form%s",
+               r->label, r->missing, r->inexact ? "; " EXACT_NUMBERS : "");
     return;
   }
-  diag_error(e->m->diags, x->span, "expect %s is not decided: no state tried gives both sides a meaningful value",
-             r->label);
-  diag_help(e->m->diags,
-            "state the expectation where its roots and logarithms are defined, with numbers of ordinary size%s",
-            r->inexact ? "; " EXACT_NUMBERS : "");
+  diag_error(e->m->diags, x->span,
+             "expect %s is not decided: no state tried gives both sides a meaningful value" HELP
+             "state the expectation where its roots and logarithms are defined, with numbers of ordinary size%s",
+             r->label, r->inexact ? "; " EXACT_NUMBERS : "");
 }
 
 /* --- parameters that follow from others, and contacts --- */

@@ -312,9 +312,8 @@ static int check_pairs(Reader *r) {
   for (uint32_t i = 0; i < r->c.n && !r->c.is_point && !b->unitless; i++) {
     Dim product = dim_mul(b->dims, dim_of_symbol(r, r->c.fresh[i]), dim_of_symbol(r, r->c.fresh[r->c.n + i]));
     if (dim_equate(b->dims, product, action, r->spans[i])) continue;
-    diag_error(b->diags, r->spans[i], "units do not match: `%s*%s` is %s, and an action %s", r->names[i].name,
-               r->names[r->c.n + i].name, in_dim(b, product), in_dim(b, action));
-    return 0;
+    return diag_error(b->diags, r->spans[i], "units do not match: `%s*%s` is %s, and an action %s", r->names[i].name,
+                      r->names[r->c.n + i].name, in_dim(b, product), in_dim(b, action));
   }
   return 1;
 }

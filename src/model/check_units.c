@@ -43,10 +43,9 @@ static void report_mismatch(Eval *ev, Span span, AstId x, AstId y) {
                ast_short(b, bare));
     if (!dim_open_name(b->dims, v->dim))
       diag_help(b->diags, "give the number its unit: `%s [%s]`", ast_short(b, bare), unit);
-  } else {
+  } else
     diag_error(b->diags, span, "units do not match: `%s` is %s, `%s` %s", ast_short(b, x), in_unit(b, shown_unit(b, v)),
                ast_short(b, y), in_unit(b, shown_unit(b, w)));
-  }
   explain_dims(b, v->dim, w->dim);
 }
 

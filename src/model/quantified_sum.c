@@ -311,9 +311,8 @@ static int may_write_out(const Eval *ev, const struct Quantified *q, uint64_t tu
            (unsigned long long)turns, RANGE_MAX, why, help);
     return 0;
   }
-  diag_note(b->diags, span, "`%s` is written out, %llu terms, some %llu MB: %s", sum, (unsigned long long)turns,
-            (unsigned long long)(turns * TERM_KB / 1024), why);
-  diag_help(b->diags, "%s", help);
+  diag_note(b->diags, span, "`%s` is written out, %llu terms, some %llu MB: %s" HELP "%s", sum,
+            (unsigned long long)turns, (unsigned long long)(turns * TERM_KB / 1024), why, help);
   return 1;
 }
 

@@ -287,9 +287,8 @@ Value index_value(Eval *ev, const AstExpr *x) {
     Name owner = ast_expr(b->ast, of->a)->name;
     e = scope_own(&b->scope, of->name, owner);
     if (!e) report_no_member(b, of->span, owner, of->name);
-  } else if (of->kind != AST_ERROR) {
+  } else if (of->kind != AST_ERROR)
     diag_error(b->diags, x->span, "an index stands directly behind the name of a family");
-  }
   return e ? indexed_value(ev, e, x, 0) : FAILED;
 }
 
