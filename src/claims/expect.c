@@ -95,8 +95,7 @@ static const Expr *parameter_substitutions(const Model *m, int closed) {
   /* each expectation may declare one more symbol */
   Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(m->g) + 2 + m->expects.n);
   int some = 0;
-  for (uint32_t i = 0; i < m->params.n; i++) {
-    const Param *p = &m->params.at[i];
+  vec_each(const Param, p, m->params) {
     if (!p->value || !(expr_kinds(m->g, p->value) & 1u << SYM_PARAM)) continue;
     with[p->sym] = expr_substitute(m->g, p->value, with, expr_symbol_count(m->g) + 1, "");
     some = 1;

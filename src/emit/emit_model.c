@@ -229,8 +229,7 @@ static void emit_switches(const ModelFile *f) {
   state_function(f, u->switch_grips, "switch_grips", "Static limits, relative to the force on a sliding body.", NULL,
                  one_out);
   sb_puts(f->out, "\nstatic const lag_switch switch_table[] = {\n");
-  for (uint32_t i = 0; i < u->switches.n; i++) {
-    const IrSwitch *s = &u->switches.at[i];
+  vec_each(const IrSwitch, s, u->switches) {
     sb_printf(f->out, "  {%s, %s, %u, %d, %d, %d, %d},\n", c_string(f->a, s->surface), c_string(f->a, s->text),
               u->lines ? s->line : 0, s->jumps, s->is_floor, s->is_timed, s->nonnegative);
   }
@@ -245,8 +244,7 @@ static void emit_sizes(const ModelFile *f) {
   if (f->u->moving_sizes)
     state_function(f, f->u->moving_sizes, "moving_sizes", "Sizes of friction that change along a run.", NULL, one_out);
   sb_puts(f->out, "\nstatic const lag_size size_table[] = {\n");
-  for (uint32_t i = 0; i < f->u->sizes.n; i++) {
-    const IrSize *s = &f->u->sizes.at[i];
+  vec_each(const IrSize, s, f->u->sizes) {
     sb_printf(f->out, "  {%s, %s, %d, %d},\n", c_string(f->a, s->what), c_string(f->a, s->text), s->open, s->part);
   }
   sb_puts(f->out, "};\n");
@@ -266,8 +264,7 @@ static void emit_charges(const ModelFile *f) {
   state_function(f, u->charge_powers, "charge_powers", "Rates of change of the energy and of these charges.", NULL,
                  one_out);
   sb_puts(f->out, "\nstatic const lag_charge charge_table[] = {\n");
-  for (uint32_t i = 0; i < u->charges.n; i++) {
-    const IrCharge *c = &u->charges.at[i];
+  vec_each(const IrCharge, c, u->charges) {
     sb_printf(f->out, "  {%s, %s, ", c_string(f->a, c->name), c_string(f->a, c->unit));
     model_flags(c->flags, flags, CHARGE_FLAGS, f->out);
     sb_puts(f->out, "},\n");
@@ -406,8 +403,7 @@ static void emit_contacts(const ModelFile *f) {
   static const char *const loads[] = {"d", "force", "load", NULL};
   if (!f->u->contacts.n) return;
   sb_puts(f->out, "\nstatic const lag_contact contact_table[] = {\n");
-  for (uint32_t i = 0; i < f->u->contacts.n; i++) {
-    const IrContact *c = &f->u->contacts.at[i];
+  vec_each(const IrContact, c, f->u->contacts) {
     sb_printf(f->out, "  {%u, %u, %u, %u, %d, %u, %d, %d},\n", c->input, c->constraint, c->impact, c->release,
               c->is_tangent, c->force, c->conditional, c->law);
   }

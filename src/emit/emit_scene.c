@@ -148,8 +148,7 @@ static void emit_scene_lists(const ProgramSet *u, const IrScene *s, const char *
   table_vars(arena_printf(u->arena, "outputs_%s", id), s->outputs.at, s->outputs.n, u->arena, out);
   if (s->options.n) {
     sb_printf(out, "\nstatic const lag_option options_%s[] = {\n", id);
-    for (uint32_t i = 0; i < s->options.n; i++) {
-      const IrOption *o = &s->options.at[i];
+    vec_each(const IrOption, o, s->options) {
       sb_printf(out, "  {%s, %s, %s},\n", c_string(u->arena, o->name), table_number(u->arena, o->value, NULL),
                 o->text ? c_string(u->arena, o->text) : "NULL");
     }
@@ -157,8 +156,7 @@ static void emit_scene_lists(const ProgramSet *u, const IrScene *s, const char *
   }
   if (s->monitors.n) {
     sb_printf(out, "\nstatic const lag_monitor monitors_%s[] = {\n", id);
-    for (uint32_t i = 0; i < s->monitors.n; i++) {
-      const IrMonitor *m = &s->monitors.at[i];
+    vec_each(const IrMonitor, m, s->monitors) {
       sb_printf(out, "  {%s, %d, %s, %d},\n", c_string(u->arena, m->name), m->output,
                 table_number(u->arena, m->limit, NULL), m->absolute);
     }
@@ -169,8 +167,7 @@ static void emit_scene_lists(const ProgramSet *u, const IrScene *s, const char *
 static void emit_measures(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
   if (!s->measures.n) return;
   sb_printf(out, "\nstatic const lag_measure measures_%s[] = {\n", id);
-  for (uint32_t i = 0; i < s->measures.n; i++) {
-    const IrMeasure *m = &s->measures.at[i];
+  vec_each(const IrMeasure, m, s->measures) {
     sb_printf(out, "  {%s, %s},\n", c_string(u->arena, m->name), c_string(u->arena, m->text));
   }
   sb_puts(out, "};\n");
@@ -185,8 +182,7 @@ static void emit_indices(const char *name, const int *at, int n, StrBuf *out) {
 static void emit_shapes(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
   if (!s->shapes.n) return;
   sb_printf(out, "\nstatic const lag_shape shapes_%s[] = {\n", id);
-  for (uint32_t i = 0; i < s->shapes.n; i++) {
-    const IrShape *x = &s->shapes.at[i];
+  vec_each(const IrShape, x, s->shapes) {
     sb_printf(out, "  {%s, %s, ", c_string(u->arena, x->kind), c_string(u->arena, x->role));
     sb_printf(out, "%s, .count = %d", x->text ? c_string(u->arena, x->text) : "NULL", x->count);
     emit_indices("a", x->a, 3, out);

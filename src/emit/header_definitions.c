@@ -126,8 +126,7 @@ static void start(const Header *h) {
   sb_printf(h->out, "  for (int i = 0; i <= %s_NY; i++) s->lost[i] = %s_C(0.0);\n", h->upper, h->upper);
   if (header_has_method(h, "moreau")) header_moreau_start(h);
   cwrite_body(h->scene->start, &st, h->a, h->out);
-  for (uint32_t i = 0; i < h->scene->moves.n; i++) {
-    const IrMove *x = &h->scene->moves.at[i];
+  vec_each(const IrMove, x, h->scene->moves) {
     uint32_t n = h->u->q.n;
     sb_printf(h->out, "  s->%s[%s] = %s;\n", x->component < n ? "q" : "v", h->q[x->component % n],
               header_constant(h, x->value));

@@ -7,8 +7,7 @@
 /* One more than the half-bandwidth of the second derivatives, in the order in which coordinates are declared. */
 static uint32_t band(const ProgramSet *u) {
   uint32_t most = 0;
-  for (uint32_t k = 0; k < u->second_at.n; k++) {
-    const IrSecond *s = &u->second_at.at[k];
+  vec_each(const IrSecond, s, u->second_at) {
     uint32_t d = s->row > s->col ? s->row - s->col : s->col - s->row;
     most = d > most ? d : most;
   }

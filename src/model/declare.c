@@ -23,8 +23,7 @@ static int declares_motion(const AstStmt *st) {
  * well. */
 static Name plain_name(Builder *b, const AstStmt *st, Name effect) {
   if (!effect) return st->name;
-  for (uint32_t i = 0; i < b->active.n; i++) {
-    const Active *a = &b->active.at[i];
+  vec_each(const Active, a, b->active) {
     if (a->effect != effect && a->stmt->name == st->name && declares_motion(a->stmt))
       return intern_printf(b, "%s.%s", effect, st->name);
   }

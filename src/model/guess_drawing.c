@@ -268,8 +268,7 @@ static void draw_rotations(Guess *k) {
 
 static void draw_balls(Guess *k) {
   Builder *b = k->d->b;
-  for (uint32_t i = 0; i < k->points.n; i++) {
-    const DrawnPoint *p = &k->points.at[i];
+  vec_each(const DrawnPoint, p, k->points) {
     int moves = 0;
     for (uint32_t c = 0; c < p->n; c++) moves |= changes(b->g, p->at[c]);
     if (!moves) continue;

@@ -88,8 +88,7 @@ static const Input *integrand(Builder *b, const Input *in, int *level) {
 }
 
 void fill_input_integrals(Builder *b) {
-  for (uint32_t i = 0; i < b->m->inputs.n; i++) {
-    Input *in = &b->m->inputs.at[i];
+  vec_each(Input, in, b->m->inputs) {
     int level;
     const Input *of = in->integral ? integrand(b, in, &level) : NULL;
     if (!of) continue;

@@ -226,8 +226,7 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
     return;
   Name *known = ARENA_ARRAY(b->arena, Name, b->scope.all.n + 3);
   uint32_t n = 0;
-  for (uint32_t i = 0; i < b->scope.all.n; i++) {
-    const Entity *e = &b->scope.all.at[i];
+  vec_each(const Entity, e, b->scope.all) {
     if (!e->effect || e->effect == effect || !scope_own(&b->scope, e->name, NULL)) known[n++] = e->name;
   }
   known[n++] = "t";

@@ -112,8 +112,7 @@ static SymKind kind_of(const Read *r) {
 }
 
 const Read *quantified_read_of(const struct Quantified *q, const Symbol *s, int64_t *part) {
-  for (uint32_t k = 0; k < q->reads.n; k++) {
-    const Read *r = &q->reads.at[k];
+  vec_each(const Read, r, q->reads) {
     *part = (int64_t)s->index - r->e->index - at_pair(quantified_element(r), q->pair[0]);
     if (kind_of(r) == s->kind && *part >= 0 && *part < (r->e->parts ? r->e->parts : 1)) return r;
   }

@@ -59,8 +59,7 @@ static Value multipliers_of(const Builder *b, const Entity *e) {
   Value v = {.n = e->parts, .dim = b->dim_of.at[b->m->constraints.at[e->index].multiplier]};
   for (uint32_t k = 0; k < component_count(&v); k++)
     v.at[k] = expr_symbol(b->g, b->m->constraints.at[e->index + k].multiplier)->node;
-  for (uint32_t i = 0; i < b->m->contacts.n; i++) {
-    const Contact *c = &b->m->contacts.at[i];
+  vec_each(const Contact, c, b->m->contacts) {
     uint32_t k = c->constraint - e->index;
     if (c->is_tangent && c->constraint >= e->index && k < component_count(&v))
       v.at[k] = expr_add(b->g, v.at[k], expr_symbol(b->g, c->force)->node);

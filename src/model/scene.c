@@ -268,8 +268,7 @@ static void default_outputs(Builder *b) {
   m->scene.outputs.cap = 2 * m->coords.n + m->states.n + 1;
   m->scene.outputs.at = ARENA_ARRAY(b->arena, Output, m->scene.outputs.cap);
   for (int velocities = 0; velocities < 2; velocities++)
-    for (uint32_t i = 0; i < m->coords.n; i++) {
-      const Coord *c = &m->coords.at[i];
+    vec_each(const Coord, c, m->coords) {
       const Symbol *s = expr_symbol(b->g, velocities ? c->v : c->q);
       Output o = {.name = s->name,
                   .span = c->span,
@@ -277,8 +276,7 @@ static void default_outputs(Builder *b) {
                   .value = s->node};
       push_output(b, &o);
     }
-  for (uint32_t i = 0; i < m->states.n; i++) {
-    const State *z = &m->states.at[i];
+  vec_each(const State, z, m->states) {
     Output o = {.name = z->name, .span = z->span, .unit = z->unit, .value = expr_symbol(b->g, z->z)->node};
     push_output(b, &o);
   }

@@ -76,8 +76,7 @@ SymId model_start_target(const Model *m, const FamilyStart *f, int64_t i, int64_
 void model_eval_starts(const Model *m, long double *symbols) {
   const Scene *sc = &m->scene;
   long double y[4];
-  for (uint32_t k = 0; k < sc->family_starts.n; k++) {
-    const FamilyStart *f = &sc->family_starts.at[k];
+  vec_each(const FamilyStart, f, sc->family_starts) {
     const FamilyValue *x = &f->of;
     EvalTape *tape = eval_tape(m->g, x->value, x->n);
     for (int64_t t = 0; t < x->range.rows * x->range.turns; t++) {

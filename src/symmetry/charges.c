@@ -18,8 +18,7 @@ static Generator generator_of(const Eqns *e, const Symmetry *y) {
   uint32_t *place = ARENA_ARRAY(e->m->arena, uint32_t, expr_symbol_count(e->g) + 1); /* 1 + index */
   Generator by = {.xi = xi};
   for (uint32_t i = 0; i < n; i++) place[eqns_coordinate(e, i)] = i + 1;
-  for (uint32_t k = 0; k < y->moves.n; k++) {
-    const Move *move = &y->moves.at[k];
+  vec_each(const Move, move, y->moves) {
     if (move->target == e->m->time) by.tau = move->rate;
     if (place[move->target]) xi[place[move->target] - 1] = move->rate;
   }

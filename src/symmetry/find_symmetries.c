@@ -400,8 +400,7 @@ static FoundSymmetries search(Eqns *e, SearchLimit *limit) {
 /* Whether energy, three momenta, three angular momenta and three boosts are among them. */
 static int has_galilean_charges(const FoundSymmetries *all) {
   uint32_t seen[SYMMETRY_SCALING + 1] = {0};
-  for (uint32_t k = 0; k < all->all.n; k++) {
-    const FoundSymmetry *s = &all->all.at[k];
+  vec_each(const FoundSymmetry, s, all->all) {
     if (s->kind == SYMMETRY_ENERGY) seen[s->kind] = 7;
     else if (s->of_all) seen[s->kind] |= 1u << s->axis;
   }
