@@ -4,32 +4,22 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "base/words.h"
 #include "emit/emit_impl.h"
 
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g"};
 
 /* Names that the head of an emitted file defines, besides lag_... and LAG_..., which no name of a model becomes
  * (emit/cnames.c). */
-static const char *const abi_names[] = {
-    "jump_table",       "TAYLOR_COLUMNS",   "TAYLOR_SUMS",      "TAYLOR_CONSTANTS",
-    "TAYLOR_WIDTH",     "TAYLOR_LANES",     "TAYLOR_GROUP",     "TAYLOR_UNROLL",
-    "TAYLOR_UNROLL_4",  "taylor_pair",      "TAYLOR_PAIR",      "taylor_at",
-    "taylor_work",      "taylor_first",     "taylor_next",      "taylor_sums",
-    "taylor_rest",      "taylor_squares",   "TAYLOR_SQUARES",   "taylor_four",
-    "TAYLOR_WIDE",      "TAYLOR_INLINE",    "taylor_sums_wide", "taylor_squares_wide",
-    "taylor_rest_wide", "taylor_at_wide",   "taylor_part",      "taylor_part_wide",
-    "taylor_rest_any",  "taylor_at_any",    "taylor_along",     "q_table",
-    "z_table",
-    "p_table",          "u_table",          "ev_table",         "dr_table",
-    "mass_table",       "second_table",     "linear",           "curves",
-    "singular",         "constraint_table", "jacobian_table",   "inertia_table",
-    "constraints",      "contact_table",    "charge_table",     "charges",
-    "switch_table",     "taylor_far",       "taylor_add",       "by_params",
-    "by_params_table",  "params_partials",  "by_inputs",        "by_inputs_table",
-    "inputs_partials",  "formula_table",    "adjoint_of",       "adjoint_rates",
-    "adjoint_project",
-};
-enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
+static const char abi_names[] =
+    "jump_table TAYLOR_COLUMNS TAYLOR_SUMS TAYLOR_CONSTANTS TAYLOR_WIDTH TAYLOR_LANES TAYLOR_GROUP TAYLOR_UNROLL "
+    "TAYLOR_UNROLL_4 taylor_pair TAYLOR_PAIR taylor_at taylor_work taylor_first taylor_next taylor_sums taylor_rest "
+    "taylor_squares TAYLOR_SQUARES taylor_four TAYLOR_WIDE TAYLOR_INLINE taylor_sums_wide taylor_squares_wide "
+    "taylor_rest_wide taylor_at_wide taylor_part taylor_part_wide taylor_rest_any taylor_at_any taylor_along q_table "
+    "z_table p_table u_table ev_table dr_table mass_table second_table linear curves singular constraint_table "
+    "jacobian_table inertia_table constraints contact_table charge_table charges switch_table taylor_far taylor_add "
+    "by_params by_params_table params_partials by_inputs by_inputs_table inputs_partials formula_table adjoint_of "
+    "adjoint_rates adjoint_project";
 
 /* --- identifiers --- */
 
@@ -52,37 +42,30 @@ const char *const *model_rows_names(const ProgramSet *u) {
 }
 
 const char *model_id(Arena *a, const char *name) {
-  static const char *const taken[] = {"accel",
-                                      "derive", "energy", "linearise", "jumps", "taylor", "variation", "second",
-                                      "events", "act", "impact", "strike", "inputs", "params", "start", "observe",
-                                      "outputs", "forces", "options", "monitors", "measures", "program", "scenes",
-                                      "curves", "exact", "exact_of", "residuals", "matrices", "charge_values",
-                                      "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws",
-                                      "guide_loads", "size_values", "size_table", "correct_positions",
-                                      "correct_velocities", "inverse_dynamics", "adjoint", "adjoint_rates",
-                                      "adjoint_project", "families", "kepler_part", "kepler_part_at",
-                                      "kepler_part_values"};
+  static const char taken[] =
+      "accel derive energy linearise jumps taylor variation second events act impact strike inputs params start "
+      "observe outputs forces options monitors measures program scenes curves exact exact_of residuals matrices "
+      "charge_values charge_powers switch_values switch_rates switch_grips contact_laws guide_loads size_values "
+      "size_table correct_positions correct_velocities inverse_dynamics adjoint adjoint_rates adjoint_project "
+      "families kepler_part kepler_part_at kepler_part_values";
   const char *id = cname(a, name);
-  int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
-  for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
-  for (int i = 0; i < N_ABI_NAMES; i++) clash |= strcmp(id, abi_names[i]) == 0;
+  int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0 || has_word(taken, id) || has_word(abi_names, id);
   return clash ? arena_printf(a, "%s_model", id) : id;
 }
 
 static const char *const *globals_of(const ProgramSet *u, const char *name) {
-  uint32_t n = N_ABI_NAMES, tables = u->inputs->tables.n, max = n + 8 * u->scenes.n + tables + 2;
-  const char **all = ARENA_ARRAY(u->arena, const char *, max);
-  memcpy(all, abi_names, sizeof abi_names);
-  if (!name) return all;
-  all[n++] = name;
-  for (uint32_t i = 0; i < tables; i++) all[n++] = model_rows_names(u)[i];
-  static const char *const lists[] = {"outputs", "forces", "options", "monitors", "measures", "exact_of", "given"};
+  CNames all = cnames_new(u->arena);
+  cnames_reserve_words(&all, "", abi_names);
+  if (!name) return cnames_list(&all);
+  cnames_reserve(&all, name);
+  for (uint32_t i = 0; i < u->inputs->tables.n; i++) cnames_reserve(&all, model_rows_names(u)[i]);
   for (uint32_t i = 0; i < u->scenes.n; i++) {
-    const char *id = scene_id(u, i);
-    all[n++] = arena_printf(u->arena, "%s_%s", name, id);
-    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) all[n++] = arena_printf(u->arena, "%s_%s", lists[k], id);
+    const char *id = scene_id(u, i), *lists[] = {name,       "outputs",  "forces",   "options",
+                                                 "monitors", "measures", "exact_of", "given"};
+    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++)
+      cnames_reserve(&all, arena_printf(u->arena, "%s_%s", lists[k], id));
   }
-  return all;
+  return cnames_list(&all);
 }
 
 /* --- functions --- */

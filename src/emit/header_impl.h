@@ -14,7 +14,7 @@ typedef struct {
   const char *file;            /* name of the file without .h */
   const char *upper, *lower;   /* prefix of all names, in upper and lower case */
   const char *const *event_ids; /* cnames_of_events */
-  CNames taken;                /* macros and enumerators of the header */
+  CNames taken;                /* global names of the header */
   const char **q, **z, **p, **in, **ev, **outputs, **contacts, **surfaces; /* enumerators by index */
   const char *const *fields;   /* members of the struct of parameters */
   const char *const *globals;
