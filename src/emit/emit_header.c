@@ -177,7 +177,7 @@ static void write_usage(const Header *h) {
       {NULL, NULL}};
   sb_puts(h->out, " *\n * In every file that uses it, and in one of them (C or C++) after #define as here:\n");
   sb_printf(h->out, " *   #define %s_IMPLEMENTATION\n *   #include \"%s.h\"\n *\n", h->upper, h->file);
-  sb_printf(h->out, " *   %s_params p;\n *   %s_state s;\n", h->lower, h->lower);
+  header_printf(h, " *   lag_params p;\n *   lag_state s;\n");
   sb_printf(h->out, " *   %s_defaults(&p); // as in scene %s\n *   %s_start(&p, &s);\n", h->lower, s->name, h->lower);
   header_template(h, loop_of(h), words);
   header_template(h, settings, words);
@@ -205,19 +205,15 @@ static void write_head(const Header *h, const char *equations) {
                                        h->lower)
                         : " * Dry friction: steps decide at each state, and go to and fro where a body sticks; `lagc "
                           "header --with moreau` adds a step that sticks.\n");
-  if (header_guides(u))
-    sb_printf(h->out, " * Guides: %s_moreau_step has their friction; other steps slide without.\n", h->lower);
+  if (header_guides(u)) header_printf(h, " * Guides: lag_moreau_step has their friction; other steps slide without.\n");
   if (header_has_method(h, "moreau") && program_set_contacts(u))
-    sb_printf(h->out, " * Contacts: %s_moreau_step follows them; other steps ignore them.\n", h->lower);
+    header_printf(h, " * Contacts: lag_moreau_step follows them; other steps ignore them.\n");
   else if (program_set_contacts(u))
-    sb_printf(h->out,
-              " * Contacts: a step ignores them. The loop below calls %s_events, %s_act and %s_hold; one without these "
-              "falls through.\n",
-              h->lower, h->lower, h->lower);
+    header_printf(h, " * Contacts: a step ignores them. The loop below calls lag_events, lag_act and lag_hold; one "
+                     "without these falls through.\n");
   if (program_set_kick(u))
-    sb_printf(h->out,
-              " * Kicks: a step ignores them. The loop below ends steps at the times of kicks, and calls %s_act.\n",
-              h->lower);
+    header_printf(
+        h, " * Kicks: a step ignores them. The loop below ends steps at the times of kicks, and calls lag_act.\n");
   if (u->events.n && !program_set_kick(u) && !u->contacts.n && !(h->parts.parts & PART_EVENTS))
     sb_puts(h->out, " * Events: a step ignores them; `lagc header --with events` adds a step that ends at them.\n");
   write_usage(h);

@@ -19,12 +19,10 @@ static void accel(const Header *h) {
   header_state_function(
       h, h->u->accel, "As _accel; results may be NaN or infinite: adaptive steps then try a shorter one.",
       header_wrapped(h, arena_printf(h->a, "static int %s_rates_at%s", h->lower, args)), extra, out, 1);
-  sb_printf(h->out, "\n%s {\n  int status = %s_rates_at(%s%s%s);\n", header_api(h, FN_ACCEL), h->lower,
-            header_state_args(h, 0, ""), a, zd);
-  if (h->u->q.n)
-    csupport_expand("  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(a, LAG_NQ)), LAG_ENAN));\n", h->upper, h->lower, h->out);
-  if (h->u->z.n)
-    csupport_expand("  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(zd, LAG_NZ)), LAG_ENAN));\n", h->upper, h->lower, h->out);
+  header_printf(h, "\n%s {\n  int status = lag_rates_at(%s%s%s);\n", header_api(h, FN_ACCEL),
+                header_state_args(h, 0, ""), a, zd);
+  if (h->u->q.n) header_printf(h, "  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(a, LAG_NQ)), LAG_ENAN));\n");
+  if (h->u->z.n) header_printf(h, "  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(zd, LAG_NZ)), LAG_ENAN));\n");
   sb_puts(h->out, "  return status;\n}\n");
 }
 
@@ -71,7 +69,7 @@ static const char *demand(const Header *h, const char *x, int sign) {
 }
 
 static void write_demand(const Header *h, const char *demand) {
-  csupport_expand(arena_printf(h->a, "  good = LAG_AND(good, %s);\n", demand), h->upper, h->lower, h->out);
+  header_printf(h, "  good = LAG_AND(good, %s);\n", demand);
 }
 
 /* lag_sizes: whether parameters have their declared signs, and the sizes that they determine. */
@@ -85,13 +83,11 @@ static void sizes(const Header *h) {
                           h->upper);
     cfunction(u->size_values, &st, &c, h->out);
   }
-  csupport_expand("\nstatic int lag_sizes(const lag_params *p) {\n#ifdef LAG_COMPLEX /* has no order */\n  (void)p;\n  "
-                  "return LAG_OK;\n#else\n"
-                  "  const LAG_REAL zero = LAG_C(0.0);\n  LAG_MASK good = LAG_IS_FINITE(zero);\n",
-                  h->upper, h->lower, h->out);
-  if (u->size_values)
-    csupport_expand(arena_printf(h->a, "  LAG_REAL size[%u];\n  lag_size_values(p, size);\n", u->sizes.n - u->nmoving),
-                    h->upper, h->lower, h->out);
+  header_printf(h,
+                "\nstatic int lag_sizes(const lag_params *p) {\n#ifdef LAG_COMPLEX /* has no order */\n  (void)p;\n  "
+                "return LAG_OK;\n#else\n"
+                "  const LAG_REAL zero = LAG_C(0.0);\n  LAG_MASK good = LAG_IS_FINITE(zero);\n");
+  if (u->size_values) header_printf(h, "  LAG_REAL size[%u];\n  lag_size_values(p, size);\n", u->sizes.n - u->nmoving);
   else sb_puts(h->out, "  (void)p;\n");
   for (uint32_t i = 0; i < u->p.n; i++)
     if (u->p.at[i].sign) write_demand(h, demand(h, arena_printf(h->a, "p->%s", h->fields[i]), u->p.at[i].sign));
@@ -100,7 +96,7 @@ static void sizes(const Header *h) {
     write_demand(h, demand(h, size, u->sizes.at[i].open ? 1 : 2));
     if (u->sizes.at[i].part) write_demand(h, arena_printf(h->a, "LAG_NOT(%s > LAG_C(1.0))", size));
   }
-  csupport_expand("  return LAG_STATUS(LAG_NOT(good), LAG_ESIZE);\n#endif\n}\n", h->upper, h->lower, h->out);
+  header_printf(h, "  return LAG_STATUS(LAG_NOT(good), LAG_ESIZE);\n#endif\n}\n");
 }
 
 /* Whether parameters can be wrong. */
@@ -116,14 +112,13 @@ static void start(const Header *h) {
   int checks = has_sizes(h->u);
   if (checks) sizes(h);
   sb_printf(h->out, "\n%s {\n", header_api(h, FN_START));
-  if (checks || header_has(h, FN_HOLD)) sb_printf(h->out, "  int status = %s_OK;\n", h->upper);
-  if (checks) csupport_expand("  LAG_TRY(lag_sizes(p));\n", h->upper, h->lower, h->out);
+  if (checks || header_has(h, FN_HOLD)) header_printf(h, "  int status = LAG_OK;\n");
+  if (checks) header_printf(h, "  LAG_TRY(lag_sizes(p));\n");
   else if (!prog_reads(h->scene->start, ARR_P) && !header_has(h, FN_HOLD)) sb_puts(h->out, "  (void)p;\n");
   sb_printf(h->out, "  s->t = %s;\n", header_constant(h, h->scene->t0));
-  if (h->u->q.n)
-    sb_printf(h->out, "  for (int i = 0; i < %s_NQ; i++) s->q[i] = s->v[i] = %s_C(0.0);\n", h->upper, h->upper);
-  if (h->u->z.n) sb_printf(h->out, "  for (int i = 0; i < %s_NZ; i++) s->z[i] = %s_C(0.0);\n", h->upper, h->upper);
-  sb_printf(h->out, "  for (int i = 0; i <= %s_NY; i++) s->lost[i] = %s_C(0.0);\n", h->upper, h->upper);
+  if (h->u->q.n) header_printf(h, "  for (int i = 0; i < LAG_NQ; i++) s->q[i] = s->v[i] = LAG_C(0.0);\n");
+  if (h->u->z.n) header_printf(h, "  for (int i = 0; i < LAG_NZ; i++) s->z[i] = LAG_C(0.0);\n");
+  header_printf(h, "  for (int i = 0; i <= LAG_NY; i++) s->lost[i] = LAG_C(0.0);\n");
   if (header_has_method(h, "moreau")) header_moreau_start(h);
   cwrite_body(h->scene->start, &st, h->a, h->out);
   vec_each(const IrMove, x, h->scene->moves) {
@@ -131,11 +126,8 @@ static void start(const Header *h) {
     sb_printf(h->out, "  s->%s[%s] = %s;\n", x->component < n ? "q" : "v", h->q[x->component % n],
               header_constant(h, x->value));
   }
-  if (header_has(h, FN_HOLD) && h->u->u.n)
-    sb_printf(h->out, "  %s_REAL u[%s_NU];\n  %s_inputs(s->t, p, u);\n", h->upper, h->upper, h->lower);
-  if (header_has(h, FN_HOLD))
-    csupport_expand(arena_printf(h->a, "  LAG_TRY(lag_hold(p, s%s));\n", h->u->u.n ? ", u" : ""), h->upper, h->lower,
-                    h->out);
+  if (header_has(h, FN_HOLD) && h->u->u.n) header_printf(h, "  LAG_REAL u[LAG_NU];\n  lag_inputs(s->t, p, u);\n");
+  if (header_has(h, FN_HOLD)) header_printf(h, "  LAG_TRY(lag_hold(p, s%s));\n", h->u->u.n ? ", u" : "");
   sb_printf(h->out, "  return %s;\n}\n",
             checks || header_has(h, FN_HOLD) ? "status" : arena_printf(h->a, "%s_OK", h->upper));
 }
@@ -195,22 +187,22 @@ static void act(const Header *h) {
   strike(h);
   for (uint32_t i = 0; i < h->u->events.n; i++)
     if (!program_set_striking_contact(h->u, i)) action(h, i);
-  sb_printf(h->out,
-            "\n%s {\n  const %s_state was = *s;\n  for (int i = 0; i <= %s_NY; i++) s->lost[i] = %s_C(0.0);\n  switch "
-            "(event) {\n",
-            header_api(h, FN_ACT), h->lower, h->upper, h->upper);
+  header_printf(h,
+                "\n%s {\n  const lag_state was = *s;\n  for (int i = 0; i <= LAG_NY; i++) s->lost[i] = LAG_C(0.0);\n  "
+                "switch (event) {\n",
+                header_api(h, FN_ACT));
   const char *q = h->u->q.n ? ", s->q, s->v" : "", *z = h->u->z.n ? ", s->z" : "",
              *args = header_state_args(h, 0, "was.");
   for (uint32_t i = 0; i < h->u->events.n; i++) {
     const IrContact *c = program_set_striking_contact(h->u, i);
     if (c)
-      sb_printf(h->out, "    case %s: return %s_strike(%u, %s, %s, s->v);\n", h->ev[i], h->lower, c->constraint,
-                h->in[c->input], args);
+      header_printf(h, "    case %s: return lag_strike(%u, %s, %s, s->v);\n", h->ev[i], c->constraint, h->in[c->input],
+                    args);
     else
       sb_printf(h->out, "    case %s:%s return %s(%s%s%s);\n", h->ev[i], h->u->events.at[i].stop ? " *stop = 1;" : "",
                 header_action(h, i), args, q, z);
   }
-  sb_printf(h->out, "    default: (void)stop; return %s_OK;\n  }\n}\n", h->upper);
+  header_printf(h, "    default: (void)stop; return LAG_OK;\n  }\n}\n");
 }
 
 /* --- constraints --- */
@@ -234,8 +226,8 @@ static int units(const Header *h) {
     sb_printf(&text, "%s%u", i ? ", " : "", first);
   }
   if (several)
-    sb_printf(h->out, "\nstatic const int %s_unit_of[] = {%s}; /* equal for coordinates with the same unit */\n",
-              h->lower, sb_text(&text));
+    header_printf(h, "\nstatic const int lag_unit_of[] = {%s}; /* equal for coordinates with the same unit */\n",
+                  sb_text(&text));
   return several != 0;
 }
 
@@ -325,7 +317,7 @@ void header_implementation(const Header *h) {
   for_scalars(h);
   sb_puts(h->out, "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n");
   math_lanes(&math, h->out);
-  csupport_expand(macros, h->upper, h->lower, h->out);
+  header_printf(h, "%s", macros);
   math_front(&math, h->out);
   defaults(h);
   param(h);

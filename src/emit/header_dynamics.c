@@ -276,7 +276,7 @@ static void define_path(const Header *h) {
 
 static void events(const Header *h) {
   const HeaderWord w[] = {{"WITH", h->u->u.n ? ", u" : ""}, {"INPUTS", h->u->u.n ? ", u, 0, 0" : ""}, {NULL, NULL}};
-  sb_printf(h->out, "\n#if !defined(%s_LANES) && !defined(%s_COMPLEX)\n", h->upper, h->upper);
+  header_printf(h, "\n#if !defined(LAG_LANES) && !defined(LAG_COMPLEX)\n");
   define_path(h);
   if (header_has(h, FN_UNTIL_EVENT)) header_begin(h, FN_UNTIL_EVENT), header_template(h, until_event_body, w);
   sb_puts(h->out, "#endif\n");
@@ -287,7 +287,7 @@ static void events(const Header *h) {
 static void name_rows(const Header *h, const char *of, const IrVar *v, uint32_t n) {
   static const char *const least[] = {"-HUGE_VAL", "0"}, *const most[] = {"HUGE_VAL", "0"};
   if (!n) return;
-  sb_printf(h->out, "static const %s_name %s_names_%s[] = {\n", h->lower, h->lower, of);
+  header_printf(h, "static const lag_name lag_names_%s[] = {\n", of);
   for (uint32_t i = 0; i < n; i++)
     sb_printf(h->out, "  {%s, %s, %s, %s, %s, %s}%s\n", c_string(h->a, v[i].name), c_string(h->a, v[i].unit->text),
               shortest_double(h->a, v[i].unit->factor), shortest_double(h->a, v[i].unit->offset), least[v[i].sign > 0],
@@ -298,12 +298,10 @@ static void name_rows(const Header *h, const char *of, const IrVar *v, uint32_t 
 void header_name_tables(const Header *h) {
   const ProgramSet *u = h->u;
   if (!(h->parts.parts & PART_NAMES)) return;
-  sb_printf(h->out, "\n#ifdef %s_WITH_NAMES\n#include <math.h>\n", h->upper);
-  sb_printf(h->out,
-            "/* A name, its unit, the size of the unit in SI (value = factor*number + offset), and bounds of the value "
-            "in SI. */\n"
-            "typedef struct %s_name {\n  const char *name, *unit;\n  double factor, offset, least, most;\n} %s_name;\n",
-            h->lower, h->lower);
+  header_printf(h, "\n#ifdef LAG_WITH_NAMES\n#include <math.h>\n");
+  header_printf(h, "/* A name, its unit, the size of the unit in SI (value = factor*number + offset), and bounds of "
+                   "the value in SI. */\ntypedef struct lag_name {\n  const char *name, *unit;\n  double factor, "
+                   "offset, least, most;\n} lag_name;\n");
   name_rows(h, "q", u->q.at, u->q.n);
   name_rows(h, "z", u->z.at, u->z.n);
   name_rows(h, "p", u->p.at, u->p.n);

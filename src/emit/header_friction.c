@@ -55,19 +55,17 @@ void header_friction_indices(const Header *h) {
   for (uint32_t i = 0; i < header_guides(h->u); i++)
     sb_printf(h->out, "  %s = %u, /* %s */\n", h->surfaces[switches + i], n++,
               comment_text(h->a, h->u->constraints.of.at[guide_at(h, i)->constraint].name));
-  sb_printf(h->out, "  %s_NSURFACES = %u\n};\n", h->upper, n);
+  header_printf(h, "  LAG_NSURFACES = %u\n};\n", n);
 }
 
 void header_friction_members(const Header *h) {
   const char *surfaces = program_set_contacts(h->u) ? "holds" : "touch";
   const char *member = arena_printf(h->a, "  LAG_REAL %s[LAG_NSURFACES]; /* in the last _moreau_step: LAG_SLIPS, "
                                           "LAG_STICKS; LAG_OPEN before the first */\n", surfaces);
-  csupport_expand(member, h->upper, h->lower, h->out);
-  csupport_expand("  LAG_REAL mode[LAG_NSURFACES];  /* mean of the sign of the quantity in that step: friction in "
-                  "parts of its size */\n",
-                  h->upper, h->lower, h->out);
-  if (header_guides(h->u))
-    csupport_expand("  LAG_REAL rubs; /* the largest friction of a guide so far */\n", h->upper, h->lower, h->out);
+  header_printf(h, "%s", member);
+  header_printf(h, "  LAG_REAL mode[LAG_NSURFACES];  /* mean of the sign of the quantity in that step: friction in "
+                   "parts of its size */\n");
+  if (header_guides(h->u)) header_printf(h, "  LAG_REAL rubs; /* the largest friction of a guide so far */\n");
 }
 
 /* A function of the state with modes behind the inputs, also where there are no inputs. */

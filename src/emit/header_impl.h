@@ -90,6 +90,9 @@ typedef struct {
   const char *mark, *text;
 } HeaderWord;
 
+/* Appends text, in which LAG_ and lag_ become the prefix. */
+void header_printf(const Header *h, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+
 /* Appends a section of the runtime's kernels. */
 void header_section(const Header *h, const char *name);
 

@@ -7,8 +7,8 @@ static void output_partials(const Header *h) {
   static const char *const d[] = {"d", NULL};
   const char *head = arena_printf(h->a, "static int %s_partials_outputs(%s, %s_REAL *d)", h->lower,
                                   header_state_args(h, 1, ""), h->upper);
-  sb_printf(h->out, "\nstatic const unsigned short %s_by_outputs_at[][2] = {%s};\n", h->lower,
-            header_positions(h, LIST(h->u->outputs_at)));
+  header_printf(h, "\nstatic const unsigned short lag_by_outputs_at[][2] = {%s};\n",
+                header_positions(h, LIST(h->u->outputs_at)));
   header_state_function(h, h->u->outputs, NULL, header_wrapped(h, head), d, d, 1);
 }
 
@@ -40,8 +40,8 @@ static void adjoint_step(const Header *h) {
                                         R, R, R, R, R),
                            own, out);
   if (n)
-    sb_printf(h->out, "\nstatic const unsigned short %s_formulas_at[][2] = {%s};\n", h->lower,
-              header_positions(h, LIST(u->formulas_at)));
+    header_printf(h, "\nstatic const unsigned short lag_formulas_at[][2] = {%s};\n",
+                  header_positions(h, LIST(u->formulas_at)));
   StrBuf at = strbuf(h->a);
   sb_printf(&at, "t%s", u->q.n ? ", y[r], y[r] + LAG_NQ" : "");
   if (u->z.n) sb_printf(&at, ", y[r] + %u", 2 * u->q.n);

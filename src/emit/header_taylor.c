@@ -34,9 +34,9 @@ void header_taylor_declare(const Header *h) {
       {"NUMBERS", arena_printf(h->a, "%u", numbers(s, 2 * h->u->q.n + h->u->z.n))},
       {"MORE", arena_printf(h->a, "%s%s", h->u->u.n ? header_held_inputs : "", header_adaptive_lanes)},
       {NULL, NULL}};
-  csupport_expand(
-      "\n/* The highest order of Taylor series. */\n#ifndef LAG_TAYLOR_ORDER\n#define LAG_TAYLOR_ORDER 40\n#endif\n",
-      h->upper, h->lower, h->out);
+  header_printf(
+      h,
+      "\n/* The highest order of Taylor series. */\n#ifndef LAG_TAYLOR_ORDER\n#define LAG_TAYLOR_ORDER 40\n#endif\n");
   emit_taylor_types(s, &st, h->lower, h->out);
   sb_putc(h->out, '\n');
   header_template(h, memory, words);
@@ -56,9 +56,8 @@ void header_taylor_define(const Header *h, const char *longest) {
                               {"INPUTS", inputs ? "u ? u : now, follows" : "0, 0"}, {"GIVEN", inputs ? ", u" : ""},
                               {"USES", inputs ? "(void)p, (void)u, " : "(void)p, "},
                               {NULL, NULL}};
-  csupport_expand(
-      "\n/* Taylor coefficients along the motion: of a value x(t), x^(k)(t) T^k/k! for orders k = 0, 1, ... */",
-      h->upper, h->lower, h->out);
+  header_printf(
+      h, "\n/* Taylor coefficients along the motion: of a value x(t), x^(k)(t) T^k/k! for orders k = 0, 1, ... */");
   emit_taylor_functions(h->u->taylor, &st, h->lower, h->out);
   header_template(h, vectors, words);
   header_section(h, "taylor_order");

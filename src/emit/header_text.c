@@ -23,6 +23,13 @@ const char *header_wrapped(const Header *h, const char *prototype) {
   return sb_text(&b);
 }
 
+void header_printf(const Header *h, const char *fmt, ...) {
+  va_list ap;
+  va_start(ap, fmt);
+  csupport_expand(arena_vprintf(h->a, fmt, ap), h->upper, h->lower, h->out);
+  va_end(ap);
+}
+
 const char *header_state_args(const Header *h, int typed, const char *from) {
   StrBuf b = strbuf(h->a);
   const char *real = typed ? arena_printf(h->a, "const %s_REAL *", h->upper) : from;
@@ -64,12 +71,10 @@ int header_has(const Header *h, HeaderFn f) {
 }
 
 void header_one_state(const Header *h, const char *name, const char *way) {
-  csupport_expand(
-      arena_printf(h->a,
-                   "int lag_%s(const void *p, ...) __attribute__((error(\"it computes one state, not LAG_LANES: %s\"\n"
-                   "  \" by a second header without LAG_LANES, with another --prefix\")));\n",
-                   name, way),
-      h->upper, h->lower, h->out);
+  header_printf(h,
+                "int lag_%s(const void *p, ...) __attribute__((error(\"it computes one state, not LAG_LANES: %s\"\n"
+                "  \" by a second header without LAG_LANES, with another --prefix\")));\n",
+                name, way);
 }
 
 /* ---- functions around programs */
