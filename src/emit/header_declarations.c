@@ -182,14 +182,14 @@ static void declare_function(const Header *h, HeaderFn f) {
   if ((f == FN_RK4_STEP || f == FN_UNTIL_EVENT || f == FN_RHS) && u->u.n)
     sb_puts(h->out,
             "\n * u: the inputs, constant during the step, as of a digital controller; 0 for the model's formulas.");
-  const char *text = arena_printf(h->a, "%s_API %s;", h->upper, header_prototype(h, f));
   sb_puts(h->out, " */\n");
   if (f == FN_UNTIL_EVENT) {
     header_printf(h, "#ifdef LAG_LANES\n");
     header_one_state(h, "step_until_event", "make steps, look at the signs of _events, and go to an event of a lane");
     sb_puts(h->out, "#else\n");
   }
-  sb_printf(h->out, "%s\n%s", header_wrapped(h, text), f == FN_UNTIL_EVENT ? "#endif\n" : "");
+  sb_printf(h->out, "%s\n%s", header_wrapped(h, "LAG_API %s;", header_prototype(h, f)),
+            f == FN_UNTIL_EVENT ? "#endif\n" : "");
 }
 
 void header_declarations(const Header *h) {

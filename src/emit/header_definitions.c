@@ -12,15 +12,12 @@
 /* --- functions around programs --- */
 
 static void accel(const Header *h) {
-  static const char *const out[] = {"a", "zd", NULL}, *const none[] = {"a", NULL};
-  const char *const *extra = !h->u->q.n ? out + 1 : h->u->z.n ? out : none;
-  const char *args = strchr(header_prototype(h, FN_ACCEL), '('), *a = h->u->q.n ? ", a" : "",
-             *zd = h->u->z.n ? ", zd" : "";
-  header_state_function(
-      h, h->u->accel, "As _accel; results may be NaN or infinite: adaptive steps then try a shorter one.",
-      header_wrapped(h, arena_printf(h->a, "static int %s_rates_at%s", h->lower, args)), extra, out, 1);
+  static const char *const out[] = {"a", "zd"};
+  header_internal_function(h, h->u->accel, "rates_at",
+                           "As _accel; results may be NaN or infinite: adaptive steps then try a shorter one.",
+                           header_rates(h), out);
   header_printf(h, "\n%s {\n  int status = lag_rates_at(%s%s%s);\n", header_api(h, FN_ACCEL),
-                header_state_args(h, 0, ""), a, zd);
+                header_state_args(h, 0, ""), h->u->q.n ? ", a" : "", h->u->z.n ? ", zd" : "");
   if (h->u->q.n) header_printf(h, "  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(a, LAG_NQ)), LAG_ENAN));\n");
   if (h->u->z.n) header_printf(h, "  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(zd, LAG_NZ)), LAG_ENAN));\n");
   sb_puts(h->out, "  return status;\n}\n");
@@ -31,7 +28,7 @@ static void accel(const Header *h) {
 /* The parameters in order, as each formula may use the parameters before it. */
 static void write_defaults(const Header *h, const char *head, int follow) {
   static const char *const own[] = {"p", NULL}, *const out[] = {"p"};
-  sb_printf(h->out, "\n%s {\n", head);
+  header_printf(h, "\n%s {\n", head);
   if (!h->u->p.n) sb_printf(h->out, "  p->none = 0;\n%s", follow ? "  (void)given;\n" : "");
   CStyle st = header_style(h, own, out);
   st.guard = follow ? "given" : NULL;
@@ -41,10 +38,7 @@ static void write_defaults(const Header *h, const char *head, int follow) {
 
 static void defaults(const Header *h) {
   write_defaults(h, header_api(h, FN_DEFAULTS), 0);
-  if (h->parts.follows)
-    write_defaults(
-        h, arena_printf(h->a, "static void %s_follow(%s_params *p, const unsigned char *given)", h->lower, h->lower),
-        1);
+  if (h->parts.follows) write_defaults(h, "static void lag_follow(lag_params *p, const unsigned char *given)", 1);
 }
 
 static void param(const Header *h) {
@@ -79,8 +73,7 @@ static void sizes(const Header *h) {
   if (u->size_values) {
     CStyle st = header_style(h, own, out);
     CFunction c = {.comment = "Sizes of friction, inertias and coefficients, of parameters alone.", .own_work = 1};
-    c.head = arena_printf(h->a, "static void %s_size_values(const %s_params *p, %s_REAL *out)", h->lower, h->lower,
-                          h->upper);
+    c.head = header_wrapped(h, "static void lag_size_values(const lag_params *p, LAG_REAL *out)");
     cfunction(u->size_values, &st, &c, h->out);
   }
   header_printf(h,
@@ -128,8 +121,7 @@ static void start(const Header *h) {
   }
   if (header_has(h, FN_HOLD) && h->u->u.n) header_printf(h, "  LAG_REAL u[LAG_NU];\n  lag_inputs(s->t, p, u);\n");
   if (header_has(h, FN_HOLD)) header_printf(h, "  LAG_TRY(lag_hold(p, s%s));\n", h->u->u.n ? ", u" : "");
-  sb_printf(h->out, "  return %s;\n}\n",
-            checks || header_has(h, FN_HOLD) ? "status" : arena_printf(h->a, "%s_OK", h->upper));
+  header_printf(h, "  return %s;\n}\n", checks || header_has(h, FN_HOLD) ? "status" : "LAG_OK");
 }
 
 static void inputs(const Header *h) {
@@ -142,44 +134,30 @@ static void inputs(const Header *h) {
 
 /* --- events --- */
 
-static const char *header_action(const Header *h, uint32_t i) {
-  return arena_printf(h->a, "%s_act_%s", h->lower, h->event_ids[i]);
-}
-
 static void action(const Header *h, uint32_t i) {
-  const char **out = ARENA_ARRAY(h->a, const char *, 4), **own = ARENA_ARRAY(h->a, const char *, 4);
-  StrBuf head = strbuf(h->a);
-  uint32_t n = 0;
-  out[0] = "q1", out[1] = "v1", out[2] = "z1";
-  if (h->u->q.n) own[n++] = "q1", own[n++] = "v1";
-  if (h->u->z.n) own[n++] = "z1";
-  sb_printf(&head, "static int %s(%s", header_action(h, i), header_state_args(h, 1, ""));
-  for (uint32_t k = 0; k < n; k++) sb_printf(&head, ", %s_REAL *%s", h->upper, own[k]);
-  sb_putc(&head, ')');
+  static const char *const out[] = {"q1", "v1", "z1"};
+  const char *q = h->u->q.n ? "LAG_REAL *q1, LAG_REAL *v1" : "", *z = h->u->z.n ? "LAG_REAL *z1" : "";
   const char *comment =
       arena_printf(h->a, "Action of the event %s: q1, v1, z1 hold the state after it.", h->u->events.at[i].name);
-  header_state_function(h, h->u->events.at[i].action, comment, header_wrapped(h, sb_text(&head)), own, out, 1);
+  header_internal_function(h, h->u->events.at[i].action, arena_printf(h->a, "act_%s", h->event_ids[i]), comment,
+                           arena_printf(h->a, "%s%s%s", q, *q && *z ? ", " : "", z), out);
 }
 
 /* Newton's law of impact for the contact whose constraint is `row`, which its input closes. */
 static void strike(const Header *h) {
-  static const char *const extra[] = {"g", "v1", NULL}, *const out[] = {"v1"};
-  const char *R = h->upper, *m = h->lower;
+  uint32_t n = h->u->constraints.of.n, nu = h->u->u.n;
   if (!h->u->impact) return;
-  StrBuf text = strbuf(h->a);
-  const char *head = arena_printf(h->a, "static int %s_impact(%s, const %s_REAL *g, %s_REAL *v1)", m,
-                                  header_state_args(h, 1, ""), R, R);
-  header_state_function(h, h->u->impact, "Velocities after the impact of the contact whose entry of g is 1.",
-                        header_wrapped(h, head), extra, out, 1);
-  head = arena_printf(h->a, "static int %s_strike(int row, int input, %s, %s_REAL *v1)", m, header_state_args(h, 1, ""),
-                      R);
-  sb_printf(&text,
-            "\n%s {\n  LAG_REAL g[%u], with[%u];\n  for (int i = 0; i < %u; i++) g[i] = LAG_C(0.0);\n  for (int i = 0; "
-            "i < %u; i++) with[i] = u[i];\n",
-            header_wrapped(h, head), h->u->constraints.of.n, h->u->u.n, h->u->constraints.of.n, h->u->u.n);
-  sb_printf(&text, "  g[row] = with[input] = LAG_C(1.0);\n  return lag_impact(t, q, v, %sp, with, g, v1);\n}\n",
-            h->u->z.n ? "z, " : "");
-  csupport_expand(sb_text(&text), R, m, h->out);
+  header_internal_function(h, h->u->impact, "impact",
+                           "Velocities after the impact of the contact whose entry of g is 1.",
+                           "const LAG_REAL *g, LAG_REAL *v1", NULL);
+  header_printf(
+      h,
+      "\n%s {\n  LAG_REAL g[%u], with[%u];\n  for (int i = 0; i < %u; i++) g[i] = LAG_C(0.0);\n  for (int i = "
+      "0; i < %u; i++) with[i] = u[i];\n",
+      header_wrapped(h, "static int lag_strike(int row, int input, %s, LAG_REAL *v1)", header_state_args(h, 1, "")), n,
+      nu, n, nu);
+  header_printf(h, "  g[row] = with[input] = LAG_C(1.0);\n  return lag_impact(t, q, v, %sp, with, g, v1);\n}\n",
+                h->u->z.n ? "z, " : "");
 }
 
 static void act(const Header *h) {
@@ -199,8 +177,8 @@ static void act(const Header *h) {
       header_printf(h, "    case %s: return lag_strike(%u, %s, %s, s->v);\n", h->ev[i], c->constraint, h->in[c->input],
                     args);
     else
-      sb_printf(h->out, "    case %s:%s return %s(%s%s%s);\n", h->ev[i], h->u->events.at[i].stop ? " *stop = 1;" : "",
-                header_action(h, i), args, q, z);
+      header_printf(h, "    case %s:%s return lag_act_%s(%s%s%s);\n", h->ev[i],
+                    h->u->events.at[i].stop ? " *stop = 1;" : "", h->event_ids[i], args, q, z);
   }
   header_printf(h, "    default: (void)stop; return LAG_OK;\n  }\n}\n");
 }
@@ -208,10 +186,7 @@ static void act(const Header *h) {
 /* --- constraints --- */
 
 static void change(const Header *h, const Prog *p, const char *name) {
-  static const char *const extra[] = {"g", "d", "force", NULL}, *const out[] = {"d", "force"};
-  header_internal_function(
-      h, p, name, arena_printf(h->a, "const %s_REAL *g, %s_REAL *d, %s_REAL *force", h->upper, h->upper, h->upper),
-      extra, out);
+  header_internal_function(h, p, name, NULL, "const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force", NULL);
 }
 
 /* The numbers of the coordinates' units, where there are several. */
@@ -232,12 +207,10 @@ static int units(const Header *h) {
 }
 
 void header_hold_define(const Header *h) {
-  static const char *const extra[] = {"c", "r", NULL};
   const IrConstraints *k = &h->u->constraints;
   int both = k->position == k->velocity;
-  const char *args = header_state_args(h, 0, "s->"), *R = h->upper, *m = h->lower, *u = h->u->u.n ? ", u" : "";
-  header_internal_function(h, k->residuals, "residuals", arena_printf(h->a, "%s_REAL *c, %s_REAL *r", R, R), extra,
-                           extra);
+  const char *args = header_state_args(h, 0, "s->"), *u = h->u->u.n ? ", u" : "";
+  header_internal_function(h, k->residuals, "residuals", NULL, "LAG_REAL *c, LAG_REAL *r", NULL);
   if (k->nholonomic) change(h, k->position, both ? "correct" : "correct_positions");
   if (!both) change(h, k->velocity, "correct_velocities");
   const char *correct =
@@ -259,7 +232,7 @@ void header_hold_define(const Header *h) {
   header_template(h, hold, words);
   header_section(h, "hold");
   header_template(h, onto, words);
-  sb_printf(h->out, "\n%s {\n  return %s_onto(p, s%s, 0);\n}\n", header_api(h, FN_HOLD), m, u);
+  header_printf(h, "\n%s {\n  return lag_onto(p, s%s, 0);\n}\n", header_api(h, FN_HOLD), u);
 }
 
 /* Operation of a program that complex numbers lack, or NULL. Scales of drifts may have absolute values: LAG_ABS. */
@@ -310,7 +283,6 @@ static int solves_dense(const Header *h) {
 }
 
 void header_implementation(const Header *h) {
-  static const char *const e[] = {"e", NULL}, *const out[] = {"out", NULL}, *const g[] = {"g", NULL};
   sb_puts(h->out, "#if " FAST_MATH "\n#error \"this header needs NaN and exact sums: compile it without -ffast-math, "
                                    "-Ofast and /fp:fast\"\n#endif\n#include <math.h>\n\n");
   MathText math = {h->u, h->upper, h->lower, solves_dense(h)};
@@ -326,14 +298,11 @@ void header_implementation(const Header *h) {
   start(h);
   inputs(h);
   accel(h);
-  if (header_has(h, FN_ENERGY)) header_state_function(h, h->u->energy, NULL, header_api(h, FN_ENERGY), e, e, 0);
-  if (header_has(h, FN_CHARGES))
-    header_state_function(h, h->u->charge_values, NULL, header_api(h, FN_CHARGES), out, out, 1);
-  if (header_has(h, FN_POWERS))
-    header_state_function(h, h->u->charge_powers, NULL, header_api(h, FN_POWERS), out, out, 1);
-  if (header_has(h, FN_OBSERVE))
-    header_state_function(h, h->scene->observe_plain, NULL, header_api(h, FN_OBSERVE), out, out, 1);
-  if (header_has(h, FN_EVENTS)) header_state_function(h, h->u->event_values, NULL, header_api(h, FN_EVENTS), g, g, 1);
+  header_api_function(h, h->u->energy, FN_ENERGY);
+  header_api_function(h, h->u->charge_values, FN_CHARGES);
+  header_api_function(h, h->u->charge_powers, FN_POWERS);
+  header_api_function(h, h->scene->observe_plain, FN_OBSERVE);
+  header_api_function(h, h->u->event_values, FN_EVENTS);
   act(h);
   sb_putc(h->out, '\n');
   math_bodies(&math, h->out);

@@ -74,22 +74,16 @@ static void write_contacts(const Header *h, const char *text) {
 
 static void define_contacts(const Header *h) {
   const ProgramSet *u = h->u;
-  static const char *const matrices[] = {"A", "M", NULL}, *const law[] = {"law", NULL},
-                           *const load[] = {"g", "d", "force", "load", NULL};
   header_section(h, "friction");
   header_section(h, "mean");
   header_section(h, "band_matrix");
   header_section(h, "impulses");
-  header_internal_function(h, u->constraints.matrices, "contact_matrices",
-                           arena_printf(h->a, "%s_REAL *A, %s_REAL *M", h->upper, h->upper), matrices, matrices);
+  header_internal_function(h, u->constraints.matrices, "contact_matrices", NULL, "LAG_REAL *A, LAG_REAL *M", NULL);
   if (u->contact_coefficients)
-    header_internal_function(h, u->contact_coefficients, "contact_coefficients",
-                             arena_printf(h->a, "%s_REAL *law", h->upper), law, law);
+    header_internal_function(h, u->contact_coefficients, "contact_coefficients", NULL, "LAG_REAL *law", NULL);
   if (u->guide_loads)
-    header_internal_function(h, u->guide_loads, "guide_loads",
-                             arena_printf(h->a, "const %s_REAL *g, %s_REAL *d, %s_REAL *force, %s_REAL *load",
-                                          h->upper, h->upper, h->upper, h->upper),
-                             load, load + 1);
+    header_internal_function(h, u->guide_loads, "guide_loads", NULL,
+                             "const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *load", NULL);
   write_contacts(h, tables);
   header_section(h, "contacts");
   write_contacts(h, note);

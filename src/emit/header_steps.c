@@ -30,13 +30,6 @@ enum { LAG_RUNGE_KUTTA_METHODS(RUNGE_KUTTA_ID) NMETHODS = sizeof methods / sizeo
 
 static int adapts(const HeaderMethod *m) { return m->kind == ADAPTIVE || m->kind == LATE; }
 
-/* A prototype, broken where it is long with the header's prefix. */
-static void write_prototype(const Header *h, const char *text) {
-  StrBuf b = strbuf(h->a);
-  csupport_expand(text, h->upper, h->lower, &b);
-  sb_puts(h->out, header_wrapped(h, sb_text(&b)));
-}
-
 /* --- explicit Runge-Kutta methods --- */
 
 static void write_trial(const Header *h, const HeaderMethod *m) {
@@ -126,7 +119,7 @@ static int has_status(const Header *h) { return some_adaptive(h) || has_single(h
 static void declare_both(const Header *h, const HeaderMethod *m) {
   for (int with = 0; with < (h->u->u.n ? 2 : 1); with++) {
     if (with) header_printf(h, "/* The same with inputs that change during the step. */\n");
-    write_prototype(h, arena_printf(h->a, "LAG_API %s;", prototype(h, m, with)));
+    sb_puts(h->out, header_wrapped(h, "LAG_API %s;", prototype(h, m, with)));
     header_printf(h, "\n");
   }
 }
@@ -191,7 +184,7 @@ static void define_both(const Header *h, const HeaderMethod *m) {
                             : arena_printf(h->a, "lag_%s(p, s, w, until", m->name);
   for (int with = 0; (h->u->u.n || splits) && with < (h->u->u.n ? 2 : 1); with++) {
     if (!splits || with) header_printf(h, "\n");
-    write_prototype(h, arena_printf(h->a, "LAG_API %s", prototype(h, m, with)));
+    sb_puts(h->out, header_wrapped(h, "LAG_API %s", prototype(h, m, with)));
     header_printf(h, " {\n  return %s%s);\n}\n", call, !h->u->u.n ? "" : with ? ", 0, input, context" : ", u, 0, 0");
   }
 }
@@ -199,12 +192,12 @@ static void define_both(const Header *h, const HeaderMethod *m) {
 static void define_method(const Header *h, const HeaderMethod *m) {
   const HeaderWord words[] = {{"METHOD", m->name}, {"TABLE", m->table}, {NULL, NULL}};
   header_printf(h, "\n");
-  write_prototype(
-      h, h->u->u.n
-             ? arena_printf(h->a,
-                            "static int lag_%s(const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL until%s)",
-                            m->name, header_held_parameters)
-             : arena_printf(h->a, "LAG_API %s", prototype(h, m, 0)));
+  sb_puts(h->out, h->u->u.n
+                      ? header_wrapped(h,
+                                       "static int lag_%s(const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL "
+                                       "until%s)",
+                                       m->name, header_held_parameters)
+                      : header_wrapped(h, "LAG_API %s", prototype(h, m, 0)));
   header_template(h, adaptive_step, words);
   define_both(h, m);
 }
@@ -237,7 +230,7 @@ static void define_fixed(const Header *h, const HeaderMethod *m) {
   const char *inner = m == &methods[ID_rk4] ? "step" : m->name;
   write_trial(h, m);
   header_printf(h, "\n");
-  if (!h->u->u.n) write_prototype(h, arena_printf(h->a, "LAG_API %s", prototype(h, m, 0)));
+  if (!h->u->u.n) sb_puts(h->out, header_wrapped(h, "LAG_API %s", prototype(h, m, 0)));
   else
     header_printf(h,
                   "static int lag_%s(const lag_params *p, lag_state *s, LAG_REAL h, const LAG_REAL *u,\n   "
@@ -246,7 +239,7 @@ static void define_fixed(const Header *h, const HeaderMethod *m) {
   header_template(h, fixed_step, words);
   for (int with = 0; h->u->u.n && with < 2; with++) {
     header_printf(h, "\n");
-    write_prototype(h, arena_printf(h->a, "LAG_API %s", prototype(h, m, with)));
+    sb_puts(h->out, header_wrapped(h, "LAG_API %s", prototype(h, m, with)));
     header_printf(h, " {\n  return lag_%s(p, s, h, %s);\n}\n", inner, with ? "0, input, context" : "u, 0, 0");
   }
 }

@@ -16,9 +16,8 @@ static CStyle base(const Header *h) {
 }
 
 static const char *prototype(const Header *h) {
-  const char *m = h->lower, *R = h->upper;
-  return arena_printf(h->a, "int %s_taylor_step(const %s_params *p, %s_state *s, %s_taylor *w, %s_REAL until%s)", m, m,
-                      m, m, R, h->u->u.n ? arena_printf(h->a, ", const %s_REAL *u", R) : "");
+  return arena_printf(h->a, "int lag_taylor_step(const lag_params *p, lag_state *s, lag_taylor *w, LAG_REAL until%s)",
+                      h->u->u.n ? ", const LAG_REAL *u" : "");
 }
 
 /* Numbers in the struct at order 40. */
@@ -40,7 +39,7 @@ void header_taylor_declare(const Header *h) {
   emit_taylor_types(s, &st, h->lower, h->out);
   sb_putc(h->out, '\n');
   header_template(h, memory, words);
-  sb_printf(h->out, "%s\n", header_wrapped(h, arena_printf(h->a, "%s_API %s;", h->upper, prototype(h))));
+  sb_printf(h->out, "%s\n", header_wrapped(h, "LAG_API %s;", prototype(h)));
 }
 
 void header_taylor_overloads(const Header *h) { sb_puts(h->out, overloads); }
@@ -66,6 +65,6 @@ void header_taylor_define(const Header *h, const char *longest) {
   header_template(h, parts, words);
   header_section(h, "taylor_step");
   header_template(h, attempt, words);
-  sb_printf(h->out, "%s", header_wrapped(h, arena_printf(h->a, "%s_API %s", h->upper, prototype(h))));
+  sb_puts(h->out, header_wrapped(h, "LAG_API %s", prototype(h)));
   header_template(h, step, words);
 }
