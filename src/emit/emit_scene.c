@@ -113,20 +113,19 @@ static void emit_observe(const ModelFile *f, const IrScene *s, const char *id) {
   const char *comment = arena_printf(f->a, "Outputs of the scene %s.", s->name);
   uint32_t n = u->u.n + u->nmodes + s->exact_of.n;
   if (!s->actions.n) {
-    state_function(f, s->observe, arena_printf(f->a, "observe_%s", id), comment, NULL, one_out);
+    state_function(f, s->observe, arena_printf(f->a, "observe_%s", id), comment, "", "out");
     return;
   }
   sb_puts(out, "\n#ifndef LAG_LANES");
-  state_function(f, s->momenta, arena_printf(f->a, "momenta_%s", id), "The momenta dL/dq'.", NULL, one_out);
+  state_function(f, s->momenta, arena_printf(f->a, "momenta_%s", id), "The momenta dL/dq'.", "", "out");
   for (uint32_t i = 0; i < s->actions.n; i++) {
     const IrAction *a = &s->actions.at[i];
     const char *what = s->momenta ? "H, dH/dp, d2H/dp2, dH/dq for the action of %s; v holds momenta."
                                   : "H, dH/dp, d2H/dp2, dH/dq for the action of %s.";
-    state_function(f, a->curve, arena_printf(f->a, "curve_%s_%u", id, i), arena_printf(f->a, what, a->name), NULL,
-                   one_out);
+    state_function(f, a->curve, arena_printf(f->a, "curve_%s_%u", id, i), arena_printf(f->a, what, a->name), "", "out");
   }
   state_function(f, s->observe, arena_printf(f->a, "values_%s", id),
-                 arena_printf(f->a, "%s Action variables stand behind the inputs.", comment), NULL, one_out);
+                 arena_printf(f->a, "%s Action variables stand behind the inputs.", comment), "", "out");
   sb_printf(
       out,
       "\nstatic int observe_%s(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n"
