@@ -8,7 +8,6 @@
 
 #include "commands/const_ranges.h"
 #include "commands/effect_sets.h"
-#include "emit/cnames.h"
 #include "emit/emit_model.h"
 #include "ir/row_share.h"
 #include "ir/program_set.h"

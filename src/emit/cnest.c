@@ -7,7 +7,6 @@
 
 #include "emit/cnest_impl.h"
 
-
 static int has_rows(const Nest *n) { return n->rows > 1; }
 
 static const char *index_text(const Nesting *x, IrSubscript at) {

@@ -122,7 +122,6 @@ int header_parts(const ProgramSet *u, const char *list, HeaderParts *parts, cons
 
 /* --- derivatives --- */
 
-
 /* Chooses lines marked b (coordinates and states), f (states alone), n (no inputs), c (constraints), o (coordinates
  * without), which become plain ones or go. */
 static void write_marked(const Header *h, const char *text, const HeaderWord *w) {

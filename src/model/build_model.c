@@ -307,7 +307,7 @@ static void apply_unused_lets(Builder *b) {
   const AstStmt *wrong = NULL;
   for (uint32_t i = 0; i < b->lets.n; i++) {
     if (b->lets.at[i].stmt == wrong) continue;
-    resolve_let(b, i);
+    resolve_definition(b, ENT_LET, i);
     if (!b->state[ENT_LET].at[i].value.e) wrong = b->lets.at[i].stmt;
   }
 }
@@ -491,7 +491,7 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order, Inpu
   if (!first_order) want_rates_of_momenta(b);
   apply_unused_lets(b);
   each_active(b, symmetry, NULL); /* before outputs use charges: fixes their units */
-  for (uint32_t i = 0; i < b->observes.n; i++) resolve_observe(b, i);
+  for (uint32_t i = 0; i < b->observes.n; i++) resolve_definition(b, ENT_OBSERVE, i);
   each_active(b, expect, NULL);
   each_active(b, canonical, NULL);
   check_whole(b);

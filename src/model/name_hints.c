@@ -282,8 +282,7 @@ void report_no_member(Builder *b, Span span, Name effect, Name name) {
 
 void warn_unit_is_constant(Builder *b, const AstUnit *u) {
   if (u->n != 1) return;
-  int ambiguous;
-  const Entity *e = scope_find(&b->scope, u->at[0].name, NULL, &ambiguous);
+  const Entity *e = entity_named(b, u->at[0].name);
   if (!e || e->kind != ENT_CONST) return;
   diag_warning(b->diags, u->span, "`[%s]` is a unit here, not the constant `%s`", u->text, e->name);
   diag_help(b->diags, "an index touches its name: `x[%s]`", e->name);

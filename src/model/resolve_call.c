@@ -183,7 +183,6 @@ const char *function_name(size_t i) {
   return i < BUILT_IN ? functions[i].name : composed[i - BUILT_IN];
 }
 
-
 int function_index(const char *name) {
   for (size_t i = 0; i < BUILT_IN; i++)
     if (strcmp(name, functions[i].name) == 0) return (int)i;
@@ -198,8 +197,7 @@ int call_takes_vectors(const Eval *ev, const AstExpr *x) {
 
 /* The coordinate, state or let in `th(0)`, which the parser takes for a call; or NULL. */
 static const Entity *called_motion(const Eval *ev, const AstExpr *x) {
-  int ambiguous;
-  const Entity *e = scope_find(&ev->b->scope, x->name, ev->effect, &ambiguous);
+  const Entity *e = scope_find(&ev->b->scope, x->name, ev->effect, NULL);
   int moves = e && (e->kind == ENT_COORD || e->kind == ENT_STATE || e->kind == ENT_LET);
   return moves && ast_list_length(ev->b->ast, x->args) == 1 ? e : NULL;
 }
@@ -222,8 +220,7 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
   for (uint32_t i = 0; i < OF_RUNS && b->is_measuring; i++) known[n++] = of_runs[i];
   for (uint32_t i = 0; i < b->scope.all.n; i++)
     if (b->scope.all.at[i].kind == ENT_FUNCTION) known[n++] = b->scope.all.at[i].name;
-  int ambiguous;
-  const Entity *e = scope_find(&b->scope, x->name, ev->effect, &ambiguous);
+  const Entity *e = scope_find(&b->scope, x->name, ev->effect, NULL);
   if (called_motion(ev, x) && ast_expr(b->ast, x->args)->kind == AST_NUM &&
       num_is_zero(ast_expr(b->ast, x->args)->number)) {
     report_start(b, x->span);

@@ -7,7 +7,6 @@
 
 #include "mech/lagrange.h"
 #include "sym/diff.h"
-#include "sym/normal_form.h"
 #include "sym/print.h"
 #include "sym/simplify.h"
 

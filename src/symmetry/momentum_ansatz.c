@@ -145,11 +145,9 @@ static void read_function(MomentumAnsatz *a, FunctionSearch *s, Expr L) {
 /* Sine and cosine of each coordinate that is declared periodic: the Runge-Lenz vector in polar coordinates contains
  * them, L does not. */
 static void add_angles(MomentumAnsatz *a, FunctionSearch *s) {
-  const Model *m = a->e->m;
   a->spare = (uint32_t)a->curved;
   for (uint32_t i = 0; i < a->n; i++) {
-    int periodic = m->hamiltonian ? m->states.at[m->pairs.at[i].q].periodic : m->coords.at[i].periodic;
-    if (!periodic) continue;
+    if (!model_is_periodic(a->e->m, a->q[i])) continue;
     add_function(s, expr_fn(a->g, EX_SIN, node(a, a->q[i])));
     a->spare = 2 * (uint32_t)a->curved;
   }

@@ -9,7 +9,6 @@
 #include "symmetry/number_recognition.h"
 #include "sym/diff.h"
 #include "sym/expr_eval.h"
-#include "sym/normal_form.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"
 
