@@ -115,12 +115,11 @@ static void each_sum(const Series *s, const char *text, StrBuf *out) {
     if (!written && !n) continue;
     if (!written) sb_printf(out, "    for (int g = %u; g < %u; g++) s[g] = ", from, from + n);
     else sb_printf(out, "    s[%u] = ", g);
-    for (const char *at = text; *at; at++) {
+    for (const char *at = text; *at; at++)
       if (*at != '$') sb_putc(out, *at);
       else if (*++at == 'g') sb_printf(out, written ? "%u" : "g", g);
       else if (written) sb_printf(out, "%u", *at == 'a' ? c.of[g].a : c.of[g].b);
       else sb_puts(out, *at == 'a' || i ? "g" : "TAYLOR_SUMS + g");
-    }
     sb_puts(out, ";\n");
   }
 }

@@ -219,9 +219,8 @@ static void emit_sizes(const ModelFile *f) {
   if (f->u->moving_sizes)
     state_function(f, f->u->moving_sizes, "moving_sizes", "Sizes of friction that change along a run.", "", "out");
   sb_puts(f->out, "\nstatic const lag_size size_table[] = {\n");
-  vec_each(const IrSize, s, f->u->sizes) {
+  vec_each(const IrSize, s, f->u->sizes)
     sb_printf(f->out, "  {%s, %s, %d, %d},\n", c_string(f->a, s->what), c_string(f->a, s->text), s->open, s->part);
-  }
   sb_puts(f->out, "};\n");
 }
 

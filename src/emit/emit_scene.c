@@ -166,9 +166,8 @@ static void emit_scene_lists(const ProgramSet *u, const IrScene *s, const char *
 static void emit_measures(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
   if (!s->measures.n) return;
   sb_printf(out, "\nstatic const lag_measure measures_%s[] = {\n", id);
-  vec_each(const IrMeasure, m, s->measures) {
+  vec_each(const IrMeasure, m, s->measures)
     sb_printf(out, "  {%s, %s},\n", c_string(u->arena, m->name), c_string(u->arena, m->text));
-  }
   sb_puts(out, "};\n");
 }
 

@@ -23,10 +23,9 @@ static int declares_motion(const AstStmt *st) {
  * well. */
 static Name plain_name(Builder *b, const AstStmt *st, Name effect) {
   if (!effect) return st->name;
-  vec_each(const Active, a, b->active) {
+  vec_each(const Active, a, b->active)
     if (a->effect != effect && a->stmt->name == st->name && declares_motion(a->stmt))
       return intern_printf(b, "%s.%s", effect, st->name);
-  }
   return st->name;
 }
 

@@ -176,10 +176,9 @@ int is_use_none(const AstStmt *st) { return st->kind == STMT_USE && strcmp(st->n
 /* Earlier `use` of the same effect in this scene, or NULL. */
 static const AstStmt *used_before(const AstStmt *scene, const AstStmt *x) {
   const AstStmt *found = NULL;
-  for (const AstStmt *s = scene->body; s != x; s = s->next) {
+  for (const AstStmt *s = scene->body; s != x; s = s->next)
     if (is_use_none(s)) found = NULL;
     else if (s->kind == STMT_USE && s->name == x->name) found = s;
-  }
   return found;
 }
 

@@ -30,10 +30,9 @@ static const Entity *find_param(Builder *b, const char *word, int *off) {
     if (e->kind == ENT_CONST) diag_help(b->diags, "constants are set when compiling: -D %s=...", word);
   } else {
     VEC(Name) known = {0};
-    vec_each(const Entity, x, b->scope.all) {
+    vec_each(const Entity, x, b->scope.all)
       if (x->kind == ENT_PARAM)
         vec_push(b->arena, &known, x->effect ? intern_printf(b, "%s.%s", x->effect, x->name) : x->name);
-    }
     Name near = suggest(word, known.at, known.n);
     diag_error(b->diags, (Span){0}, "--fix %s: the model has no such parameter", word);
     if (near) diag_help(b->diags, "did you mean `%s`?", near);

@@ -230,13 +230,9 @@ static void draw_coordinates(Guess *k) {
     family = family && !of.at[i].name;
     angles = angles && of.at[i].angle;
   }
-  if (family && !angles) {
-    draw_row(k, &of);
-  } else if (angles && of.n) {
-    draw_angles(k, &of);
-  } else if (!draw_polar(k, &of)) {
-    draw_lines(k, &of);
-  }
+  if (family && !angles) draw_row(k, &of);
+  else if (angles && of.n) draw_angles(k, &of);
+  else if (!draw_polar(k, &of)) draw_lines(k, &of);
 }
 
 /* --- bodies --- */

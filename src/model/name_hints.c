@@ -226,9 +226,8 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
     return;
   Name *known = ARENA_ARRAY(b->arena, Name, b->scope.all.n + 3);
   uint32_t n = 0;
-  vec_each(const Entity, e, b->scope.all) {
+  vec_each(const Entity, e, b->scope.all)
     if (!e->effect || e->effect == effect || !scope_own(&b->scope, e->name, NULL)) known[n++] = e->name;
-  }
   known[n++] = "t";
   known[n++] = "pi";
   if (is_asked(b, span) && b->m->lagrangian) known[n++] = "energy";

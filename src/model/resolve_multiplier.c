@@ -69,7 +69,6 @@ static Value multipliers_of(const Builder *b, const Entity *e) {
 
 Value multiplier_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
-  if (!arity_is(ev, x, 1)) return FAILED;
   if (ev->where < IN_OBSERVE && !b->in_friction)
     return refuse(
         b, x->span,

@@ -38,13 +38,9 @@ static void put_symmetry(StrBuf *out, const NoetherReport *r, uint32_t k) {
   sb_printf(out, ", \"is\": \"%s\", \"power\": ", charges_drift_word(s->is.drift));
   put_power(out, e->m, &s->is);
   Conditions positive = noether_conditions(r, k);
-  for (uint32_t i = 0; i < positive.n; i++) {
-    put_expr(out, e->m, i ? ", " : ", \"positive\": [", positive.at[i]);
-  }
+  for (uint32_t i = 0; i < positive.n; i++) put_expr(out, e->m, i ? ", " : ", \"positive\": [", positive.at[i]);
   if (positive.n) sb_putc(out, ']');
-  if (s->is.over_time) {
-    put_expr(out, e->m, ", \"F_integral_of\": ", s->is.over_time);
-  }
+  if (s->is.over_time) put_expr(out, e->m, ", \"F_integral_of\": ", s->is.over_time);
   if (s->is.jumps) sb_puts(out, ", \"between_jumps\": true");
   if (declared) sb_printf(out, ", \"declared\": \"%s\"", declared);
   sb_putc(out, '}');

@@ -399,10 +399,9 @@ static FoundSymmetries search(Eqns *e, SearchLimit *limit) {
 /* Whether energy, three momenta, three angular momenta and three boosts are among them. */
 static int has_galilean_charges(const FoundSymmetries *all) {
   uint32_t seen[SYMMETRY_SCALING + 1] = {0};
-  vec_each(const FoundSymmetry, s, all->all) {
+  vec_each(const FoundSymmetry, s, all->all)
     if (s->kind == SYMMETRY_ENERGY) seen[s->kind] = 7;
     else if (s->of_all) seen[s->kind] |= 1u << s->axis;
-  }
   return seen[SYMMETRY_ENERGY] && seen[SYMMETRY_MOMENTUM] == 7 && seen[SYMMETRY_ROTATION] == 7 &&
          seen[SYMMETRY_BOOST] == 7;
 }

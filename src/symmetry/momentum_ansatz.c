@@ -90,10 +90,9 @@ static void look_into(FunctionSearch *s, Expr x) {
   else if (op != EX_SUM && op != EX_PROD) {
     if (!(s->has[x] & HAS_V)) add_function(s, x);
   } else
-    for (ExprPair part = {0}; expr_next_pair(g, x, op, &part);) {
+    for (ExprPair part = {0}; expr_next_pair(g, x, op, &part);)
       if (op == EX_SUM || is_power(part.num)) s->is_wanted[part.of] = 1;
       else if (s->has[part.of] == HAS_Q) add_function(s, expr_pow_num(g, part.of, part.num));
-    }
 }
 
 /* Adds the functions in x; returns the degree of its polynomials. */

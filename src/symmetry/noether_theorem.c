@@ -315,9 +315,8 @@ static Expr scale_of(const ProofWork *w, Expr F) {
 static Expr constraint_moved(const ProofWork *w, Expr c) {
   Expr *seed = ARENA_ARRAY(w->m->arena, Expr, w->symbols);
   memcpy(seed, w->moving, w->symbols * sizeof *seed);
-  vec_each(const Input, in, w->m->inputs) {
+  vec_each(const Input, in, w->m->inputs)
     if (in->rate) seed[in->sym] = expr_mul(w->g, w->tau, proof_node(w, w->m->inputs.at[in->rate].sym));
-  }
   return tangent(w, c, seed, "_delta");
 }
 

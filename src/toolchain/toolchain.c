@@ -254,9 +254,8 @@ static int build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n
   const char *why;
   int ok = !t->soname || is_alone(t) ||
            file_write(arena_printf(a, "%s/exports.map", f->path), exports, strlen(exports), &why);
-  for (size_t i = 0; i < n && ok; i++) {
+  for (size_t i = 0; i < n && ok; i++)
     ok = file_write(arena_printf(a, "%s/%s", f->path, texts[i].name), texts[i].text, strlen(texts[i].text), &why);
-  }
   if (!ok) *error = cannot_write(a, f->path, why);
   ok = ok && compile_with_tmpdir(a, t, f->path, texts, n, error);
   if (ok && !file_exists(made_in(a, t, f->path))) {
