@@ -293,8 +293,7 @@ void header_implementation(const Header *h) {
   math_front(&math, h->out);
   defaults(h);
   param(h);
-  header_section(h, "failures");
-  header_section(h, "finite");
+  header_sections(h, "failures, finite");
   start(h);
   inputs(h);
   accel(h);

@@ -244,7 +244,6 @@ static const struct {
 
 static void define_path(const Header *h) {
   int of = header_has(h, FN_UNTIL_EVENT) ? 0 : header_has_method(h, "moreau") ? 1 : 2;
-  const char *const kernels[] = {"ends", dense_outputs[of].kernel, "root", "locate"};
   StrBuf d = strbuf(h->a);
   for (uint32_t i = 0; i < h->u->events.n; i++) sb_printf(&d, "%s%d", i ? ", " : "", h->u->events.at[i].direction);
   const char *now = h->u->u.n ? ", lag_held(a->p, a->at.t, a->u, a->input, a->context, a->now)" : "";
@@ -252,8 +251,7 @@ static void define_path(const Header *h) {
                           {"MEMBERS", dense_outputs[of].members}, {"WITHIN", dense_outputs[of].within},
                           {"OF_PATH", h->u->u.n ? ", a->u" : ""}, {"FIRST", dense_outputs[of].first},
                           {"LAST", dense_outputs[of].last}, {NULL, NULL}};
-  for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
-    header_section(h, kernels[i]);
+  header_sections(h, arena_printf(h->a, "ends, %s, root, locate", dense_outputs[of].kernel));
   if (h->parts.parts & PART_PATH) header_section(h, "series");
   const LineChoice choices[] = {{'s', header_has(h, FN_UNTIL_EVENT)}, {0, 0}};
   write_marked(h, header_chosen(h, step_path, choices), w);

@@ -93,8 +93,9 @@ typedef struct {
 /* Appends text, in which LAG_ and lag_ become the prefix. */
 void header_printf(const Header *h, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
-/* Appends a section of the runtime's kernels. */
+/* Appends a section of the runtime's kernels, or several: "friction, mean". */
 void header_section(const Header *h, const char *name);
+void header_sections(const Header *h, const char *names);
 
 /* Appends a template: its lines begin with a mark, q, z or u for models with coordinates, states or inputs, n for
  * those without inputs, and `|`. HELD, PASS: parameters and arguments for inputs, CALL: arguments of _accel, ARGS:

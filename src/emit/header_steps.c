@@ -219,8 +219,7 @@ static void define_splitting(const Header *h) {
 
 /* Steps of dop853 that keep their stages k[16]; the rest of dense output: stages 12 to 15, the highest terms. */
 static void define_dense_steps(const Header *h) {
-  header_section(h, "dop853_dense");
-  header_section(h, "dense");
+  header_sections(h, "dop853_dense, dense");
   header_template(h, dense_steps, NULL);
 }
 
@@ -254,8 +253,7 @@ static const char *longest(const Header *h) {
 static void define_adaptive(const Header *h) {
   header_printf(h, "%s", ordered);
   math_power(h->upper, h->lower, h->out);
-  header_section(h, "errors");
-  header_section(h, "step_size");
+  header_sections(h, "errors, step_size");
   header_adaptive_define(h, longest(h));
   for (int i = 0; i < NMETHODS; i++) {
     const HeaderMethod *m = &methods[i];

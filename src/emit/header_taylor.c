@@ -59,8 +59,7 @@ void header_taylor_define(const Header *h, const char *longest) {
       h, "\n/* Taylor coefficients along the motion: of a value x(t), x^(k)(t) T^k/k! for orders k = 0, 1, ... */");
   emit_taylor_functions(h->u->taylor, &st, h->lower, h->out);
   header_template(h, vectors, words);
-  header_section(h, "taylor_order");
-  header_section(h, "taylor_size");
+  header_sections(h, "taylor_order, taylor_size");
   header_template(h, begin, words);
   header_template(h, parts, words);
   header_section(h, "taylor_step");

@@ -154,6 +154,13 @@ const char *header_positions(const Header *h, const IrEntry *at, uint32_t n) {
 
 void header_section(const Header *h, const char *name) { embedded_section(name, h->upper, h->lower, h->out); }
 
+void header_sections(const Header *h, const char *names) {
+  for (size_t n; *names; names += n + strspn(names + n, ", ")) {
+    n = strcspn(names, ",");
+    header_section(h, arena_strndup(h->a, names, n));
+  }
+}
+
 const char *const header_held_inputs = "\n * u: the inputs, constant during the step; 0 for the model's formulas.";
 const char *const header_adaptive_lanes = "\n * Over lanes: a try in each lane that is not at its `until`. One whose "
                                           "step is too long keeps its state, and has a shorter step in the next\n"

@@ -52,12 +52,8 @@ void header_variational_define(const Header *h) {
                            "dL/dq, the momenta dL/dq', and the generalised forces outside of L.",
                            "LAG_REAL *Lq, LAG_REAL *Lv, LAG_REAL *Q", NULL);
   header_internal_function(h, h->u->second, "second_derivatives", "Their nonzero derivatives.", "LAG_REAL *h", NULL);
-  header_section(h, "gauss points");
-  header_section(h, "rule: tables");
+  header_sections(h, "gauss points, rule: tables");
   write(h, begin);
-  header_section(h, "predictor");
-  header_section(h, "band_matrix");
-  header_section(h, "newton");
-  header_section(h, "discrete");
+  header_sections(h, "predictor, band_matrix, newton, discrete");
   write(h, steps);
 }

@@ -83,13 +83,10 @@ AstStmt *stmt_titled(Ast *ast, AstStmtKind kind, Span span, Ident name, AstText 
 }
 
 static void check_type(Ast *ast, Ident type) {
-  static const char *const known[] = {"vec2", "vec3", "rotation"};
-  Name names[3];
-  for (size_t i = 0; i < 3; i++) {
+  static const Name known[] = {"vec2", "vec3", "rotation"};
+  for (size_t i = 0; i < 3; i++)
     if (strcmp(type.name, known[i]) == 0) return;
-    names[i] = intern(ast->names, known[i]);
-  }
-  Name near = suggest(type.name, names, 3);
+  Name near = suggest(type.name, known, 3);
   diag_error(ast->diags, type.span, "unknown type `%s`", type.name);
   if (near) diag_help(ast->diags, "did you mean `%s`?", near);
   else diag_help(ast->diags, "the types are `vec2`, `vec3` and, of coordinates, `rotation`; a number has none");
