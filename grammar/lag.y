@@ -146,26 +146,26 @@ single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MOD
       | "dissipation" "=" expr[e]               { $$ = stmt_value(ast, STMT_DISSIPATION, @$, $e); }
       | "force" place[q] "=" expr[e]            { $$ = stmts_each(ast, $q, $q, stmts_one(stmt_pair(ast, STMT_FORCE, @$, $q, $e))).first; }
       | "force" tuple[q] "=" expr[e]            { $$ = stmt_pair(ast, STMT_FORCE, @$, $q, $e); }
-      | "constraint" IDENT[n] members[d] ":" arith[a] "=" expr[b] condition[w] { $$ = stmts_each(ast, $d.first, $d.last, stmts_one(stmt_constraint(ast, @$, $n, $d, $a, $b, $w))).first; }
-      | "symmetry" IDENT[n] "(" names[a] ")" doc[d] ":" maps[m] { $$ = stmt_symmetry(ast, @$, $n, $a, $d, $m); }
-      | "canonical" IDENT[n] variables[a] doc[d] ":" items[m] { $$ = stmt_canonical(ast, @$, $n, $a, $d, $m); }
-      | "expect" IDENT[n] ":" arith[a] "=" expr[b] { $$ = stmt_equation(ast, STMT_EXPECT, @$, $n, NONE_LIST, $a, $b); }
-      | "expect" arith[a] "=" expr[b]           { $$ = stmt_equation(ast, STMT_EXPECT, @$, NONE_IDENT, NONE_LIST, $a, $b); }
+      | "constraint" IDENT[n] members[d] ":" arith[a] "=" expr[b] condition[w] { $$ = stmts_each(ast, $d.first, $d.last, stmts_one(stmt_equation(ast, STMT_CONSTRAINT, @$, $n, $d, $a, $b, $w))).first; }
+      | "symmetry" IDENT[n] "(" names[a] ")" doc[d] ":" maps[m] { $$ = stmt_maps(ast, STMT_SYMMETRY, @$, $n, $a, $d, $m); }
+      | "canonical" IDENT[n] variables[a] doc[d] ":" items[m] { $$ = stmt_maps(ast, STMT_CANONICAL, @$, $n, $a, $d, $m); }
+      | "expect" IDENT[n] ":" arith[a] "=" expr[b] { $$ = stmt_equation(ast, STMT_EXPECT, @$, $n, NONE_LIST, $a, $b, 0); }
+      | "expect" arith[a] "=" expr[b]           { $$ = stmt_equation(ast, STMT_EXPECT, @$, NONE_IDENT, NONE_LIST, $a, $b, 0); }
       | "event" IDENT[n] members[d] ":" arith[g] direction[w] block[b] { $$ = stmts_each(ast, $d.first, $d.last, stmts_one(stmt_event(ast, @$, $n, $d, $g, $w, $b))).first; }
       | "kick" IDENT[n] members[d] "every" arith[T] block[b] { $$ = stmts_each(ast, $d.first, $d.last, stmts_one(stmt_event(ast, @$, $n, $d, $T, AT_EQUAL_TIMES, $b))).first; }
-      | "contact" IDENT[n] dims[d] ":" gap[g] "," "restitution" "=" expr[e] rubbing[r] { $$ = stmt_contact(ast, @$, $n, $d, $g, $e, $r); }
-      | "contact" IDENT[n] "[" ranges[d] "]" ":" gap[g] "," "restitution" "=" expr[e] rubbing[r] { $$ = stmt_contact(ast, @$, $n, $d, $g, $e, $r); }
+      | "contact" IDENT[n] dims[d] ":" gap[g] "," "restitution" "=" expr[e] rubbing[r] { $$ = stmt_equation(ast, STMT_CONTACT, @$, $n, $d, $g, $e, $r.first); }
+      | "contact" IDENT[n] "[" ranges[d] "]" ":" gap[g] "," "restitution" "=" expr[e] rubbing[r] { $$ = stmt_equation(ast, STMT_CONTACT, @$, $n, $d, $g, $e, $r.first); }
       | "for" IDENT[i] "in" arith[lo] ".." arith[hi] block[b] { $$ = stmt_for(ast, @$, $i, $lo, $hi, $b); }
       | "effect" IDENT[n] doc[d] block[b]       { $$ = stmt_titled(ast, STMT_EFFECT, @$, $n, $d, $b); }
       | "scene" IDENT[n] doc[d] block[b]        { $$ = stmt_titled(ast, STMT_SCENE, @$, $n, $d, $b); }
       | "span" arith[e]                         { $$ = stmt_value(ast, STMT_SPAN, @$, $e); }
-      | "method" method_name[n] options_opt[o]  { $$ = stmt_options(ast, STMT_METHOD, @$, $n, $o); }
+      | "method" method_name[n] options_opt[o]  { $$ = stmt_titled(ast, STMT_METHOD, @$, $n, NONE_TEXT, $o); }
       | "tolerance" arith[e]                    { $$ = stmt_value(ast, STMT_TOLERANCE, @$, $e); }
-      | "output" exprs[l] every[e]              { $$ = stmt_output(ast, @$, $l, $e); }
-      | "measure" IDENT[n] "=" expr[e]          { $$ = stmt_measure(ast, @$, $n, $e); }
-      | "draw" SHAPE[k] members[d] clauses[c]     { $$ = stmt_draw(ast, @$, $k, $d, 0, 0, $c); }
-      | "draw" SHAPE[k] members[d] value[e] clauses[c] { $$ = stmt_draw(ast, @$, $k, $d, $e, 0, $c); }
-      | "draw" SHAPE[k] members[d] IDENT[n] "=" expr[e] clauses[c] { $$ = stmt_draw(ast, @$, $k, $d, ast_name(ast, $n), $e, $c); }
+      | "output" exprs[l] every[e]              { $$ = stmt_equation(ast, STMT_OUTPUT, @$, NONE_IDENT, NONE_LIST, 0, $e, $l.first); }
+      | "measure" IDENT[n] "=" expr[e]          { $$ = stmt_equation(ast, STMT_MEASURE, @$, $n, NONE_LIST, 0, $e, 0); }
+      | "draw" SHAPE[k] members[d] clauses[c]     { $$ = stmt_equation(ast, STMT_DRAW, @$, $k, $d, 0, 0, $c.first); }
+      | "draw" SHAPE[k] members[d] value[e] clauses[c] { $$ = stmt_equation(ast, STMT_DRAW, @$, $k, $d, $e, 0, $c.first); }
+      | "draw" SHAPE[k] members[d] IDENT[n] "=" expr[e] clauses[c] { $$ = stmt_equation(ast, STMT_DRAW, @$, $k, $d, ast_name(ast, $n), $e, $c.first); }
       | "like" IDENT[n]                         { $$ = stmt_name(ast, STMT_LIKE, @$, $n); }
       | "stop"                                  { $$ = stmt_plain(ast, STMT_STOP, @$); }
       | moved[p] "=" value[v]                   { $$ = stmt_pair(ast, STMT_SET, @$, $p, $v); }
@@ -254,9 +254,9 @@ maps: map_item[x]             { $$ = stmts_one($x); }
     ;
 map_item: map[m]  { $$ = $m; }
         | each[m] { $$ = $m; }
-        | "for" IDENT[i] "in" arith[lo] ".." arith[hi] ":" each[m] { $$ = stmt_for_map(ast, @$, $i, $lo, $hi, $m); }
+        | "for" IDENT[i] "in" arith[lo] ".." arith[hi] ":" each[m] { $$ = stmt_for(ast, @$, $i, $lo, $hi, stmts_one($m)); }
         ;
-each: "for" IDENT[i] "in" arith[lo] ".." arith[hi] ":" map[m] { $$ = stmt_for_map(ast, @$, $i, $lo, $hi, $m); };
+each: "for" IDENT[i] "in" arith[lo] ".." arith[hi] ":" map[m] { $$ = stmt_for(ast, @$, $i, $lo, $hi, stmts_one($m)); };
 map: place[q] "->" expr[e] { $$ = stmts_each(ast, $q, $q, stmts_one(stmt_pair(ast, STMT_MAP, @$, $q, $e))).first; };
 
 /* ---- canonical transformations ---- */
@@ -281,7 +281,7 @@ assign: moved[p] "=" expr[e] { $$ = stmt_pair(ast, STMT_SET, @$, $p, $e); };
 uses: use[x]             { $$ = stmts_one($x); }
     | uses[l] "," use[x] { $$ = stmts_add($l, $x); }
     ;
-use: IDENT[n] options_opt[o] { $$ = stmt_options(ast, STMT_USE, @$, $n, $o); };
+use: IDENT[n] options_opt[o] { $$ = stmt_titled(ast, STMT_USE, @$, $n, NONE_TEXT, $o); };
 
 options_opt: %empty             { $$ = NONE_STMTS; }
            | "(" ")"            { $$ = NONE_STMTS; }

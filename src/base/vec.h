@@ -33,3 +33,6 @@ static inline void *vec_grow(Arena *a, void *at, uint32_t n, uint32_t *cap, size
 #define vec_push(a, v, x)                                                            \
   ((v)->at = vec_grow((a), (v)->at, (v)->n, &(v)->cap, sizeof *(v)->at), \
    (v)->at[(v)->n++] = (x))
+
+/* Loop over the elements, vec_each(const Coord, c, m->coords); the list does not grow meanwhile. */
+#define vec_each(T, x, v) for (T *x = (v).at, *x##_end = (v).n ? x + (v).n : x; x != x##_end; x++)

@@ -85,8 +85,7 @@ void branch_coverage_note(BranchCoverage *s, const long double *symbols) {
 
 const char *branch_coverage_missing(const BranchCoverage *s) {
   StrBuf b = strbuf(expr_arena(s->g));
-  for (uint32_t i = 0; i < s->all.n; i++) {
-    const Sides *of = &s->all.at[i];
+  vec_each(const Sides, of, s->all) {
     if (of->one && of->other) continue;
     sb_putc(&b, '`');
     expr_print(s->g, of->e, PRINT_TEXT, &b);

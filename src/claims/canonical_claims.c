@@ -218,8 +218,7 @@ int canonical_holds(Eqns *e, const Canonical *c, const CaseSymbols *symbols, con
 void canonicals_check(Eqns *e, StrBuf *out) {
   const Model *m = e->m;
   const CaseSymbols symbols = cases_symbols(m);
-  for (uint32_t i = 0; i < m->canonicals.n; i++) {
-    const Canonical *c = &m->canonicals.at[i];
+  vec_each(const Canonical, c, m->canonicals) {
     const char *how;
     if (!canonical_holds(e, c, &symbols, &how)) continue;
     Place p = source_place(m->ast->sources, c->span.begin);

@@ -183,8 +183,7 @@ static Real shown_value(const CounterexampleSearch *s, const FreeSymbol *f) {
 
 /* Whether the state still shows the difference with values of so many digits, as they are printed. */
 static int shows_with(CounterexampleSearch *s, int digits) {
-  for (uint32_t i = 0; i < s->free.n; i++) {
-    const FreeSymbol *f = &s->free.at[i];
+  vec_each(const FreeSymbol, f, s->free) {
     char text[64];
     snprintf(text, sizeof text, "%.*Lg", digits, shown_value(s, f));
     s->symbols[f->sym] =
@@ -209,8 +208,7 @@ static int fewest_digits(CounterexampleSearch *s) {
 /* "th1 = 1, th1' = 0, m1 = 1": the coordinates, and other symbols in the sides. */
 static const char *state_text(const CounterexampleSearch *s, int digits) {
   StrBuf b = strbuf(s->m->arena);
-  for (uint32_t i = 0; i < s->free.n; i++) {
-    const FreeSymbol *f = &s->free.at[i];
+  vec_each(const FreeSymbol, f, s->free) {
     if (!f->shown) continue;
     sb_printf(&b, "%s%s = %.*Lg", b.n ? ", " : "", expr_symbol(s->g, f->sym)->name, digits, shown_value(s, f));
     if (unit_factor(f->unit) != 1 || (!f->rate && !num_is_zero(f->unit->offset)))
@@ -249,8 +247,7 @@ static void gather_params(CounterexampleSearch *s) {
   Arena *a = m->arena;
   VEC(Expr) is = {0}, follows = {0};
   Expr *with = ARENA_ARRAY(a, Expr, expr_symbol_count(s->g) + 1);
-  for (uint32_t i = 0; i < m->params.n; i++) {
-    const Param *p = &m->params.at[i];
+  vec_each(const Param, p, m->params) {
     if (!p->value) continue;
     with[p->sym] = expr_substitute(s->g, p->value, with, expr_symbol_count(s->g) + 1, "");
     vec_push(a, &is, with[p->sym]);
@@ -276,8 +273,7 @@ static void gather_free(CounterexampleSearch *s) {
   Unit *si = ARENA_NEW(a, Unit);
   *si = unit_si(DIM_ANY, "");
   for (int rates = 0; rates < 2; rates++)
-    for (uint32_t i = 0; i < m->coords.n; i++) {
-      const Coord *c = &m->coords.at[i];
+    vec_each(const Coord, c, m->coords) {
       SymId sym = rates ? c->v : c->q;
       int shown = m->coords.n <= FEW_COORDINATES || is_in_sides(s, sym);
       vec_push(a, &s->free, ((FreeSymbol){sym, &c->unit, rates, shown}));
@@ -295,8 +291,7 @@ static void gather_free(CounterexampleSearch *s) {
       vec_push(a, &s->free, ((FreeSymbol){m->inputs.at[i].sym, &m->inputs.at[i].unit, 0, 1}));
   /* then M and f matter */
   int moves = ((expr_kinds(s->g, s->left) | expr_kinds(s->g, s->right)) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0;
-  for (uint32_t i = 0; i < m->params.n; i++) {
-    const Param *p = &m->params.at[i];
+  vec_each(const Param, p, m->params) {
     if (s->e->definitions && s->e->definitions[p->sym]) continue;
     int shown = is_in_sides(s, p->sym) || (moves && in_equations(s->e, p->sym));
     vec_push(a, &s->free, ((FreeSymbol){p->sym, &p->unit, 0, shown}));

@@ -76,17 +76,15 @@ ExpectResult expect_judge(const Eqns *e, const CaseSymbols *symbols, const Expec
 static void report_unknown(const Eqns *e, const Expect *x, const ExpectResult *r) {
   if (r->missing) {
     diag_error(e->m->diags, x->span,
-               "expect %s is not decided: no proof is found, and no state that was compared shows %s", r->label,
-               r->missing);
-    diag_help(e->m->diags, "state the expectation for one side of the switch alone, or in another form%s",
-              r->inexact ? "; " EXACT_NUMBERS : "");
+               "expect %s is not decided: no proof is found, and no state that was compared shows %s" HELP
+               "state the expectation for one side of the switch alone, or in another form%s",
+               r->label, r->missing, r->inexact ? "; " EXACT_NUMBERS : "");
     return;
   }
-  diag_error(e->m->diags, x->span, "expect %s is not decided: no state tried gives both sides a meaningful value",
-             r->label);
-  diag_help(e->m->diags,
-            "state the expectation where its roots and logarithms are defined, with numbers of ordinary size%s",
-            r->inexact ? "; " EXACT_NUMBERS : "");
+  diag_error(e->m->diags, x->span,
+             "expect %s is not decided: no state tried gives both sides a meaningful value" HELP
+             "state the expectation where its roots and logarithms are defined, with numbers of ordinary size%s",
+             r->label, r->inexact ? "; " EXACT_NUMBERS : "");
 }
 
 /* --- parameters that follow from others, and contacts --- */
@@ -97,8 +95,7 @@ static const Expr *parameter_substitutions(const Model *m, int closed) {
   /* each expectation may declare one more symbol */
   Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(m->g) + 2 + m->expects.n);
   int some = 0;
-  for (uint32_t i = 0; i < m->params.n; i++) {
-    const Param *p = &m->params.at[i];
+  vec_each(const Param, p, m->params) {
     if (!p->value || !(expr_kinds(m->g, p->value) & 1u << SYM_PARAM)) continue;
     with[p->sym] = expr_substitute(m->g, p->value, with, expr_symbol_count(m->g) + 1, "");
     some = 1;

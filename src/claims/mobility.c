@@ -170,11 +170,10 @@ static uint32_t contradicting(const Eqns *e, StateSolver *s, const long double *
 
 static int report_contradiction(const Eqns *e, uint32_t k, const char *why) {
   const Model *m = e->m;
-  diag_error(m->diags, e->constraints.of[k]->span,
-             "scene %s: the constraint `%s` contradicts the constraints before it: %s", m->scene.name,
-             e->constraints.of[k]->name, why);
-  diag_help(m->diags, "leave one of them out, or make them agree");
-  return 0;
+  return diag_error(m->diags, e->constraints.of[k]->span,
+                    "scene %s: the constraint `%s` contradicts the constraints before it: %s" HELP
+                    "leave one of them out, or make them agree",
+                    m->scene.name, e->constraints.of[k]->name, why);
 }
 
 /* Whether redundant constraints agree: in their accelerations at the start, and in the states that they allow a

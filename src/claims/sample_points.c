@@ -86,8 +86,7 @@ static void open_contacts(SamplePoints *s, long double *symbols) {
   long double *slope = ARENA_ARRAY(s->m->arena, long double, nq + 1);
   for (int sweep = 0; sweep < SWEEPS && passed; sweep++) {
     passed = 0;
-    for (uint32_t i = 0; i < s->m->contacts.n; i++) {
-      const Contact *c = &s->m->contacts.at[i];
+    vec_each(const Contact, c, s->m->contacts) {
       if (is_open(s, c, symbols)) continue;
       long double gap = value_of(s, c->gap, symbols), square = 0;
       passed++;

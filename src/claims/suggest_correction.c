@@ -331,8 +331,7 @@ static void guess_replacement(EditSearch *md, const Site *s, Expr with, double c
 static void guess_argument(EditSearch *md, const Site *argument, Expr needed) {
   Expr lacking = expr_sub(md->g, needed, argument->value);
   const AstExpr *x = ast_of(md, argument);
-  for (uint32_t i = 0; i < md->sites.n; i++) {
-    const Site *t = &md->sites.at[i];
+  vec_each(const Site, t, md->sites) {
     if (t->side != argument->side || t->role != SITE_TERM || t->node < x->first || t->node > argument->node ||
         !t->value)
       continue;

@@ -151,8 +151,7 @@ static const char *left_out(const Budget *b, const Setting *s) {
 static void put_settings(const Budget *b, const Setting *best, StrBuf *out) {
   const EffectStudy *s = b->study;
   sb_printf(out, "  %-32s %10s %12s  %s\n", "effects left out", "error", "time [ms]", "setting");
-  for (uint32_t i = 0; i < b->all.n; i++) {
-    const Setting *x = &b->all.at[i];
+  vec_each(const Setting, x, b->all) {
     if (isnan(x->error))
       sb_printf(out, "  %-32s %10s %12s  its smallest error is %.1e\n", left_out(b, x), "-", "-", x->time);
     else

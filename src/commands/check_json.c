@@ -33,6 +33,13 @@ static StrBuf *begin(Compiler *c, JsonList list) {
   return out;
 }
 
+static StrBuf *begin_named(Compiler *c, JsonList list, const char *name) {
+  StrBuf *out = begin(c, list);
+  sb_puts(out, "{\"name\": ");
+  sb_json(out, name);
+  return out;
+}
+
 void check_json_facts(Compiler *c, const Eqns *e) {
   StrBuf *out = begin(c, JSON_FACTS);
   const Model *m = e->m;
@@ -50,9 +57,7 @@ void check_json_report(Compiler *c, const StrBuf *lines) {
 }
 
 void check_json_scene(Compiler *c, const char *kind, Name name, const Model *m, int ok) {
-  StrBuf *out = begin(c, JSON_SCENES);
-  sb_puts(out, "{\"name\": ");
-  sb_json(out, name);
+  StrBuf *out = begin_named(c, JSON_SCENES, name);
   put_member(out, "kind", kind);
   sb_printf(out, ", \"ok\": %s, \"effects\": [", ok ? "true" : "false");
   for (uint32_t i = 0; m && i < m->effects.n; i++) {
@@ -67,9 +72,7 @@ void check_json_symmetries(Compiler *c, const Eqns *e, Name effect) {
   for (uint32_t i = 1; i < e->ncharges; i++) {
     const Charge *x = &e->charges[i];
     if (x->of->effect != effect) continue;
-    StrBuf *out = begin(c, JSON_SYMMETRIES);
-    sb_puts(out, "{\"name\": ");
-    sb_json(out, x->name);
+    StrBuf *out = begin_named(c, JSON_SYMMETRIES, x->name);
     put_span(out, c->sources, x->of->span);
     put_member(out, "verdict",
                x->proof.broken     ? "false"
@@ -85,9 +88,7 @@ void check_json_expects(Compiler *c, const ExpectResults *all) {
   static const char *const verdicts[] = {"proved", "refuted", "agrees in numbers", "not decided"};
   for (uint32_t i = 0; i < all->n; i++) {
     const ExpectResult *x = &all->at[i];
-    StrBuf *out = begin(c, JSON_EXPECTS);
-    sb_puts(out, "{\"name\": ");
-    sb_json(out, x->label);
+    StrBuf *out = begin_named(c, JSON_EXPECTS, x->label);
     put_span(out, c->sources, x->span);
     put_member(out, "verdict", verdicts[x->verdict]);
     sb_printf(out, ", \"digits\": %d, \"states\": %d", x->digits, x->states);

@@ -79,8 +79,7 @@ static void offer_settings(CommandLine *l) {
   Model *m = read_model(l);
   if (!m) return;
   for (uint32_t i = 0; i < m->params.n; i++) offer_setting(l, m->params.at[i].name, "parameter", &m->params.at[i].unit);
-  for (uint32_t i = 0; i < m->coords.n; i++) {
-    const Coord *c = &m->coords.at[i];
+  vec_each(const Coord, c, m->coords) {
     offer_setting(l, c->name, "start of the coordinate", &c->unit);
     offer_setting(l, arena_printf(l->arena, "%s'", c->name), "start of its velocity", NULL);
   }

@@ -78,8 +78,7 @@ static void put_total(const EffectStudy *s, const char *name, int ops, int width
 }
 
 static void put_failures(const EffectStudy *s, StrBuf *out) {
-  for (uint32_t i = 0; i < s->rows.n; i++) {
-    const EffectRow *row = &s->rows.at[i];
+  vec_each(const EffectRow, row, s->rows) {
     if (!row->excluded_by && s->measured[row->apart].why)
       sb_printf(out, "%s %s the run fails: %s\n", row->on ? "without" : "with", name_of(s, row),
                 s->measured[row->apart].why);

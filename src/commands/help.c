@@ -251,8 +251,7 @@ static void put_overview(StrBuf *out) {
   page_term(out, "methods", "of integration, with their options", TERMS);
   sb_putc(out, '\n');
   page_paragraphs(out, "MODEL is a .lag file; without a SCENE its first scene is taken. Exit status: 0 ok, 1 bad "
-                       "model, 2 usage or files, "
-                       "3 the run failed.");
+                       "model, 2 usage or files, 3 the run failed.");
 }
 
 static Name nearest(Arena *a, const char *topic) {

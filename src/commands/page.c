@@ -62,11 +62,10 @@ static void put_recording(Compiler *c, const Scene *scene, StrBuf *out) {
 
 static const char *escaped(Arena *a, const char *text) {
   StrBuf out = strbuf(a);
-  for (; *text; text++) {
+  for (; *text; text++)
     if (*text == '<') sb_puts(&out, "&lt;");
     else if (*text == '&') sb_puts(&out, "&amp;");
     else sb_putc(&out, *text);
-  }
   return sb_text(&out);
 }
 

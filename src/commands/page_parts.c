@@ -31,10 +31,9 @@ void page_bytes(StrBuf *out, const char *bytes, size_t n) {
 void page_text(StrBuf *out, Arena *a, const char *text) {
   StrBuf b = strbuf(a);
   sb_json(&b, text);
-  for (const char *s = sb_text(&b); *s; s++) {
+  for (const char *s = sb_text(&b); *s; s++)
     if (*s == '<') sb_puts(out, "\\u003c");
     else sb_putc(out, *s);
-  }
 }
 
 int page_module(Compiler *c, const char *name, StrBuf *out) {

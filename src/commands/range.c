@@ -25,11 +25,10 @@ static const char *find_separator(const char *s) {
 static size_t number_length(const char *s) {
   int depth = 0;
   size_t n = 0;
-  for (; s[n]; n++) {
+  for (; s[n]; n++)
     if (s[n] == '(') depth++;
     else if (s[n] == ')' && depth-- == 0) break;
     else if (depth == 0 && (s[n] == ',' || s[n] == ':' || strncmp(s + n, "..", 2) == 0)) break;
-  }
   return n;
 }
 

@@ -93,19 +93,13 @@ static int trains_network(const Eqns *e, const Options *o) {
   return found;
 }
 
-static int passes_flag(const Options *o, const char *name) {
-  int found = 0;
-  for (uint32_t i = 0; i < o->rest.n; i++) found |= strcmp(o->rest.at[i], name) == 0;
-  return found;
-}
-
 /* Flags of --with, and of commands that differentiate. */
 static unsigned required_by_words(const Eqns *e, const Options *o) {
   int all = o->command == CMD_LINEARIZE || (o->with && strcmp(o->with, "derivatives") == 0);
   if (all) return WANT_SENSITIVITY | WANT_INVERSE | WANT_ADJOINT;
   if (o->gradient.n || trains_network(e, o)) return WANT_SENSITIVITY | WANT_ADJOINT;
   if (o->command == CMD_FIT || o->command == CMD_DESIGN || options_passed(o, "--sensitivity")) return WANT_SENSITIVITY;
-  if (passes_flag(o, "--amplitude")) return WANT_LINEAR | WANT_TAYLOR;
+  if (options_pass_flag(o, "--amplitude")) return WANT_LINEAR | WANT_TAYLOR;
   return !o->with ? 0u : strcmp(o->with, "sensitivities") == 0 ? WANT_SENSITIVITY : WANT_LINEAR;
 }
 

@@ -451,7 +451,8 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   p->scenes = (SceneList){scenes, o->scenes.n};
   p->scene = o->scene ? scenes[0] : NULL;
   /* head of the simulator's messages */
-  add_argument(&k, arena_printf(k.arena, "lagc %s", command_find(o->command)->name), NULL);
+  const char *name = command_find(o->command)->name;
+  add_argument(&k, arena_printf(k.arena, "lagc %s", name), NULL);
   if (o->command == CMD_EFFECTS) add_argument(&k, "--effects", "report");
   for (uint32_t i = 0; i < o->observe.n; i++) ok &= add_output(&k, "--observe", o->observe.at[i]) != NULL;
   ok = ok && prepare_section(&k, error) && prepare_measures(&k, &o->measure, "--measure", error) &&
@@ -459,16 +460,11 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   if (o->gradient.n) add_argument(&k, "--gradient", NULL);
   if (o->command == CMD_PLOT) ok = ok && prepare_plot(&k, error);
   if (o->command == CMD_ANIMATE) ok = ok && prepare_animate(&k, error);
-  if (o->command == CMD_MODES) add_argument(&k, "--modes", NULL);
-  if (o->command == CMD_DESIGN) add_argument(&k, "--design", NULL);
-  if (o->command == CMD_LINEARIZE) add_argument(&k, "--linearize", NULL);
+  if (has_word("modes design linearize orbit continue lyapunov cost", name))
+    add_argument(&k, arena_printf(k.arena, "--%s", name), NULL);
   if (o->by_effects && o->scenes.n > 1) return fail_with(error, "--effects: name one scene, whose effects are judged");
   if (o->by_effects) add_argument(&k, "--each-effect", NULL);
   if (o->command == CMD_FIT) ok = ok && prepare_columns(&k, error);
-  if (o->command == CMD_ORBIT) add_argument(&k, "--orbit", NULL);
-  if (o->command == CMD_CONTINUE) add_argument(&k, "--continue", NULL);
-  if (o->command == CMD_LYAPUNOV) add_argument(&k, "--lyapunov", NULL);
-  if (o->command == CMD_COST) add_argument(&k, "--cost", NULL);
   if (o->command == CMD_SWEEP) ok = ok && prepare_sweep(&k, error);
   if (o->command == CMD_COST && o->error) {
     p->error = strcmp(o->error, "final") == 0 || strcmp(o->error, "residual") == 0

@@ -14,10 +14,9 @@
 const char *text_trimmed(Arena *a, const char *text, size_t n) {
   char *out = arena_alloc(a, n + 1);
   size_t k = 0;
-  for (size_t i = 0; i < n; i++) {
+  for (size_t i = 0; i < n; i++)
     if (!is_space(text[i])) out[k++] = text[i];
     else if (k && out[k - 1] != ' ') out[k++] = ' ';
-  }
   out[k - (k && out[k - 1] == ' ')] = '\0';
   return out;
 }

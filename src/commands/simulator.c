@@ -8,7 +8,6 @@
 
 #include "commands/const_ranges.h"
 #include "commands/effect_sets.h"
-#include "emit/cnames.h"
 #include "emit/emit_model.h"
 #include "emit/late_text.h"
 #include "ir/row_share.h"
@@ -159,8 +158,7 @@ static int add_effect_scenes(Compiler *c, const Eqns *run, Units *units, Lowered
   EffectStudy *s = effect_study_plan(run->m);
   if (!s) return 0;
   if (!c->o.scene) pass_argument(c, scene);
-  for (uint32_t i = 0; i < s->rows.n; i++) {
-    const EffectRow *row = &s->rows.at[i];
+  vec_each(const EffectRow, row, s->rows) {
     if (row->excluded_by) continue;
     EffectList only = effect_names(s, s->variants.at[row->apart]);
     ModelChoice choice = choice_of(c, scene, 0);

@@ -490,8 +490,7 @@ int command_verify(Compiler *c) {
   if (conditional)
     return usage_error(arena_printf(c->arena,
                                     "a function is compared with one set of equations, and those change where `%s` "
-                                    "begins to hold: compare models with and "
-                                    "without that constraint",
+                                    "begins to hold: compare models with and without that constraint",
                                     conditional));
   if (!v.ny) return usage_error("the model has no coordinates and no states: there is nothing to compare");
   if (!begin(&v, &error)) return usage_error(error);

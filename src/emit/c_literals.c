@@ -60,12 +60,11 @@ const char *c_number(Arena *a, const char *prefix, Num n) {
 const char *c_string(Arena *a, const char *s) {
   StrBuf b = strbuf(a);
   sb_putc(&b, '"');
-  for (; *s; s++) {
+  for (; *s; s++)
     if (*s == '"' || *s == '\\') sb_printf(&b, "\\%c", *s);
     else if (*s == '\n') sb_puts(&b, "\\n");
     else if (*s == '?' && b.n > 1 && s[-1] == '?') sb_puts(&b, "\\?"); /* no trigraphs */
     else sb_putc(&b, *s);
-  }
   sb_putc(&b, '"');
   return sb_text(&b);
 }

@@ -321,8 +321,7 @@ static void write_turn(Writer *w, const Body *b) {
 /* End of a turn: stores, and the values carried to the next turn. */
 static void write_turn_end(Writer *w, const Body *b) {
   const Loop *l = b->l;
-  for (uint32_t k = 0; k < l->stores.n; k++) {
-    const LoopStore *s = &l->stores.at[k];
+  vec_each(const LoopStore, s, l->stores) {
     const char *index = index_text(w, s->index, s->step), *x = cwriter_operand(w, code_of(w, l, 0, s->offset)).text;
     cwriter_statement(w, arena_printf(w->a, "%s%s[%s] = %s;", cwriter_guard(w, index), w->style->out[s->array], index,
                                       x));

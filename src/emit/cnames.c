@@ -5,39 +5,33 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "base/words.h"
 #include "numeric/functions.def"
 
-#define NAME(OP, name, ...) #name,
+#define NAME(OP, name, ...) #name " "
 
 /* Reserved words: keywords and names of C and C++, and names that emitted text uses. */
-static const char *const reserved[] = {
-    "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum", "extern", "float",
-    "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return", "short", "signed", "sizeof",
-    "static", "struct", "switch", "typedef", "union", "unsigned", "void", "volatile", "while", "asm", "bool", "catch",
-    "class", "delete", "explicit", "export", "false", "friend", "mutable", "namespace", "new", "operator", "private",
-    "protected", "public", "template", "this", "throw", "true", "try", "typeid", "typename", "using", "virtual", "and",
-    "or", "not", "xor", "compl", "bitand", "bitor", "and_eq", "or_eq", "not_eq", "xor_eq", "alignas", "alignof",
-    "nullptr", "noexcept", "constexpr", "consteval", "constinit", "decltype", "static_assert", "thread_local", "typeof",
-    "const_cast", "static_cast", "dynamic_cast", "reinterpret_cast", "concept", "requires", "co_await", "co_return",
-    "co_yield", "wchar_t", "char8_t", "char16_t", "char32_t", "size_t", "ptrdiff_t", "float_t", "double_t", "offsetof",
-    "main", "errno", "signgam", FUNCTIONS(NAME) "atan2", "fabs", "sqrt", "pow", "hypot", "NULL", "INFINITY", "NAN",
-    "EOF", "OVERFLOW", "UNDERFLOW", "DOMAIN", "SING", "PLOSS", "TLOSS", "I", "HUGE", "HUGE_VAL", "HUGE_VALF",
-    "HUGE_VALL", "MAXFLOAT", "M_E", "M_LOG2E", "M_LOG10E", "M_LN2", "M_LN10", "M_PI", "M_PI_2", "M_PI_4", "M_1_PI",
-    "M_2_PI", "M_2_SQRTPI", "M_SQRT2", "M_SQRT1_2", "FP_NAN", "FP_INFINITE", "FP_ZERO", "FP_SUBNORMAL", "FP_NORMAL",
-    "FP_ILOGB0", "FP_ILOGBNAN", "FP_FAST_FMA", "FP_FAST_FMAF", "FP_FAST_FMAL", "MATH_ERRNO", "MATH_ERREXCEPT",
-    "math_errhandling", "near", "far", "unix", "linux",
-};
+static const char reserved[] =
+    "auto break case char const continue default do double else enum extern float for goto if inline int long "
+    "register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while "
+    "asm bool catch class delete explicit export false friend mutable namespace new operator private protected "
+    "public template this throw true try typeid typename using virtual and or not xor compl bitand bitor and_eq "
+    "or_eq not_eq xor_eq alignas alignof nullptr noexcept constexpr consteval constinit decltype static_assert "
+    "thread_local typeof const_cast static_cast dynamic_cast reinterpret_cast concept requires co_await co_return "
+    "co_yield wchar_t char8_t char16_t char32_t size_t ptrdiff_t float_t double_t offsetof main errno signgam "
+    FUNCTIONS(NAME)
+    "atan2 fabs sqrt pow hypot NULL INFINITY NAN EOF OVERFLOW UNDERFLOW DOMAIN SING PLOSS TLOSS I HUGE HUGE_VAL "
+    "HUGE_VALF HUGE_VALL MAXFLOAT M_E M_LOG2E M_LOG10E M_LN2 M_LN10 M_PI M_PI_2 M_PI_4 M_1_PI M_2_PI M_2_SQRTPI "
+    "M_SQRT2 M_SQRT1_2 FP_NAN FP_INFINITE FP_ZERO FP_SUBNORMAL FP_NORMAL FP_ILOGB0 FP_ILOGBNAN FP_FAST_FMA "
+    "FP_FAST_FMAF FP_FAST_FMAL MATH_ERRNO MATH_ERREXCEPT math_errhandling near far unix linux";
 
 /* Functions of the C library that a compiler or <math.h> declares: allowed as names of locals, not of objects with
  * external linkage. */
-static const char *const library[] = {
-  "abort", "abs", "acosh", "alloca", "asinh", "atanh", "bcmp", "bcopy", "bzero", "calloc", "ceil", "clog", "conj",
-  "copysign", "cexp", "cpow", "drem", "erf", "erfc", "exit", "exp2", "exp10", "expm1", "fdim", "ffs", "floor", "fma",
-  "fmax", "fmin", "fmod", "fork", "free", "frexp", "gamma", "ilogb", "index", "isinf", "isnan", "j0", "j1", "jn",
-  "labs", "ldexp", "lgamma", "log10", "log1p", "log2", "logb", "lrint", "lround", "malloc", "modf", "nan",
-  "nearbyint", "nextafter", "pow10", "printf", "puts", "realloc", "remainder", "rindex", "rint", "round", "scalb",
-  "scalbn", "signbit", "significand", "sincos", "strlen", "tgamma", "trunc", "y0", "y1", "yn",
-};
+static const char library[] =
+    "abort abs acosh alloca asinh atanh bcmp bcopy bzero calloc ceil clog conj copysign cexp cpow drem erf erfc exit "
+    "exp2 exp10 expm1 fdim ffs floor fma fmax fmin fmod fork free frexp gamma ilogb index isinf isnan j0 j1 jn labs "
+    "ldexp lgamma log10 log1p log2 logb lrint lround malloc modf nan nearbyint nextafter pow10 printf puts realloc "
+    "remainder rindex rint round scalb scalbn signbit significand sincos strlen tgamma trunc y0 y1 yn";
 
 /* Names of the Greek letters U+0391..U+03C9, by position from alpha. */
 static const char *const greek[] = {
@@ -90,16 +84,10 @@ const char *cname(Arena *a, const char *name) {
   /* the C library's, the runtime's */
   int taken = text[0] == '_' || strncmp(text, "lag_", 4) == 0 || strncmp(text, "LAG_", 4) == 0;
   if (taken) text = arena_printf(a, "x%s", text);
-  for (size_t i = 0; i < sizeof reserved / sizeof *reserved; i++)
-    if (strcmp(text, reserved[i]) == 0) return arena_printf(a, "%s_", text);
-  return text;
+  return has_word(reserved, text) ? arena_printf(a, "%s_", text) : text;
 }
 
-int cname_is_library(const char *id) {
-  for (size_t i = 0; i < sizeof library / sizeof *library; i++)
-    if (strcmp(id, library[i]) == 0) return 1;
-  return 0;
-}
+int cname_is_library(const char *id) { return has_word(library, id); }
 
 CNames cnames_new(Arena *a) { return (CNames){.arena = a, .table = idtable(a, 0)}; }
 
@@ -117,6 +105,18 @@ void cnames_reserve(CNames *c, const char *name) {
   if (find(c, name)) return;
   vec_push(c->arena, &c->taken, ((CName){name, 2}));
   idtable_add(&c->table, hash_of(name), c->taken.n - 1);
+}
+
+void cnames_reserve_words(CNames *c, const char *head, const char *words) {
+  const char *word;
+  for (size_t i = 0; (word = word_at(c->arena, words, i)) != NULL; i++)
+    cnames_reserve(c, arena_printf(c->arena, "%s%s", head, word));
+}
+
+const char *const *cnames_list(const CNames *c) {
+  const char **all = ARENA_ARRAY(c->arena, const char *, c->taken.n + 1);
+  for (uint32_t i = 0; i < c->taken.n; i++) all[i] = c->taken.at[i].name;
+  return all;
 }
 
 const char *cnames_take(CNames *c, const char *name) {

@@ -21,6 +21,10 @@ CNames cnames_new(Arena *a);
 
 /* Reserves an identifier as it is (arrays, macros of the caller). */
 void cnames_reserve(CNames *c, const char *name);
+void cnames_reserve_words(CNames *c, const char *head, const char *words); /* head and each word */
+
+/* All taken names, NULL at the end. */
+const char *const *cnames_list(const CNames *c);
 
 /* Takes a free identifier for a user's name: no keyword and no function of <math.h>. */
 const char *cnames_take(CNames *c, const char *name);

@@ -366,8 +366,7 @@ static int64_t end_of(const Nest *n, uint32_t k) {
 /* Copies the parameters that nests read into an array: struct members cannot be indexed. */
 static void copy_parameters(Writer *w) {
   int64_t end = 0;
-  for (uint32_t k = 0; k < w->p->nests.n; k++) {
-    const Nest *n = &w->p->nests.at[k];
+  vec_each(const Nest, n, w->p->nests) {
     for (Slot s = 1; s < n->body->ins.n; s++) {
       const Ins *i = &n->body->ins.at[s];
       if (i->op == IR_LOAD && i->array == ARR_P && end_of(n, i->index) > end) end = end_of(n, i->index);

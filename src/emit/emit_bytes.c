@@ -87,8 +87,7 @@ static void constraints(const Unit *w) {
 
 static void contacts(const Unit *w) {
   word(w, w->u->contacts.n);
-  for (uint32_t i = 0; i < w->u->contacts.n; i++) {
-    const IrContact *c = &w->u->contacts.at[i];
+  vec_each(const IrContact, c, w->u->contacts) {
     word(w, c->input), word(w, c->constraint), word(w, c->impact), word(w, c->release), integer(w, c->is_tangent);
     word(w, c->force), integer(w, c->conditional), integer(w, c->law);
   }
@@ -110,8 +109,7 @@ static void families(const Unit *w) {
   const ProgramSet *u = w->u;
   word(w, u->families.n);
   if (!u->families.n) return;
-  for (uint32_t i = 0; i < u->families.n; i++) {
-    const IrContactFamily *c = &u->families.at[i];
+  vec_each(const IrContactFamily, c, u->families) {
     text(w, c->name);
     integer(w, (int)c->indices), integer(w, (int)c->i0), integer(w, (int)c->j0), integer(w, (int)c->rows);
     integer(w, (int)c->skew), integer(w, (int)c->turns), integer(w, (int)c->more);
@@ -152,8 +150,7 @@ static void charges(const Unit *w) {
 static void switches(const Unit *w) {
   const ProgramSet *u = w->u;
   word(w, u->switches.n), word(w, u->nmodes);
-  for (uint32_t i = 0; i < u->switches.n; i++) {
-    const IrSwitch *s = &u->switches.at[i];
+  vec_each(const IrSwitch, s, u->switches) {
     text(w, s->surface), text(w, s->text);
     word(w, u->lines ? s->line : 0);
     integer(w, s->jumps), integer(w, s->is_floor), integer(w, s->is_timed), integer(w, s->nonnegative);
@@ -269,8 +266,7 @@ static void indices(const Unit *w, const int *at, int n) {
 
 static void shapes(const Unit *w, const IrScene *s) {
   word(w, s->ndrawn), word(w, s->shapes.n);
-  for (uint32_t i = 0; i < s->shapes.n; i++) {
-    const IrShape *x = &s->shapes.at[i];
+  vec_each(const IrShape, x, s->shapes) {
     text(w, x->kind), text(w, x->role), text(w, x->text), integer(w, x->count);
     indices(w, x->a, 3), indices(w, x->b, 3), indices(w, x->size, 3), indices(w, x->turn, 4);
   }
@@ -285,8 +281,7 @@ static void outputs(const Unit *w, const IrScene *s) {
   for (uint32_t i = 0; i < s->exact_of.n; i++) word(w, s->exact_of.at[i]);
   program(w, s->exact_of.n ? s->exact : NULL);
   word(w, s->actions.n);
-  for (uint32_t i = 0; i < s->actions.n; i++) {
-    const IrAction *a = &s->actions.at[i];
+  vec_each(const IrAction, a, s->actions) {
     word(w, a->q), word(w, a->p), integer(w, a->periodic);
     program(w, a->curve);
   }

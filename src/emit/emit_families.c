@@ -15,8 +15,8 @@ static void family_functions(const ModelFile *f, const IrContactFamily *c, uint3
   const char *name = comment_text(f->a, c->name);
   const char *values = "A contact of the family %s: gap, rate, restitution, frictions, slips, rows of A.",
              *reach = "The distance at which %s looks for neighbours, and the box.";
-  state_function(f, c->values, arena_printf(f->a, "family_%u", i), arena_printf(f->a, values, name), NULL, one_out);
-  state_function(f, c->reach, arena_printf(f->a, "family_%u_reach", i), arena_printf(f->a, reach, name), NULL, one_out);
+  state_function(f, c->values, arena_printf(f->a, "family_%u", i), arena_printf(f->a, values, name), "", "out");
+  state_function(f, c->reach, arena_printf(f->a, "family_%u_reach", i), arena_printf(f->a, reach, name), "", "out");
   reads(arena_printf(f->a, "family_%u_coords", i), c->coords.at, c->coords.n, f->out);
   reads(arena_printf(f->a, "family_%u_params", i), c->params.at, c->params.n, f->out);
 }
@@ -37,11 +37,10 @@ static void family_row(const ModelFile *f, const IrContactFamily *c, uint32_t i)
 }
 
 void emit_families(const ModelFile *f) {
-  static const char *const written[] = {"M", NULL};
   const ProgramSet *u = f->u;
   if (!u->families.n) return;
   for (uint32_t i = 0; i < u->families.n; i++) family_functions(f, &u->families.at[i], i);
-  state_function(f, u->family_inertia, "family_inertia", "Entries of the mass matrix.", NULL, written);
+  state_function(f, u->family_inertia, "family_inertia", "Entries of the mass matrix.", "", "M");
   emit_entries("family_mass", u->family_mass.at, u->family_mass.n, f->out);
   sb_puts(f->out, "\nstatic const lag_contact_family family_table[] = {\n");
   for (uint32_t i = 0; i < u->families.n; i++) family_row(f, &u->families.at[i], i);

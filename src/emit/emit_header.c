@@ -20,81 +20,60 @@ static const char *cased(Arena *a, const char *s, int upper) {
   return t;
 }
 
-#define LAST_STAGE(name, NAME, kind, dense, order, line, words) #NAME "_LAST",
-static const char *const header_names[] = {"REAL",
-                                           "API", "STATIC", "IMPLEMENTATION", "IMPLEMENTED", "H_INCLUDED", "MASK",
-                                           "LANE", "LANES", "LIBM", "OWN", "COMPLEX", "ABS", "BITS", "IS_float",
-                                           "IS_double", "IS_long", "FMA", "NO_FMA", "INLINE", "TRY", "WHERE", "FAILED",
-                                           "STATUS", "EUNMET", "PIVOTS", "PIVOTS_STATUS", "OK", "ABI", "WITH_NAMES",
-                                           "ESINGULAR", "ESTEP", "NQ", "NZ", "NY", "NC", "NHOLONOMIC", "NP", "NU",
-                                           "NEV", "NOUT", "NNZ", "NNZ_IDA", "ENEWTON", "ENAN", "EZENO", "ETOLERANCE",
-                                           "ESIZE", "IS_FINITE", "ECONTACT", "DEGREE", "LOCATE_ROWS", "LOCATE_UNSEEN",
-                                           "LOCATE_ROUGH", "LOCATE_FINEST", "PRESSING_SIZE", "THE_MODEL", "LAWS",
-                                           "MODEL", "MAX_DRIFTS", LAG_RUNGE_KUTTA_METHODS(LAST_STAGE) "NCONTACTS",
-                                           "NSURFACES", "NSLOPES", "OPEN", "SLIPS", "STICKS", "RULE_FREE", "NNEWTON",
-                                           "NBAND", "QQ", "VQ", "VV", "FQ", "FV",
-                                           "MOST_CORRECTIONS", "PREDICTOR_DEGREE",
-                                           "VARIATIONAL_ORDER", "TAYLOR_ORDER", "TAYLOR_COLUMNS", "TAYLOR_WIDTH",
-                                           "TAYLOR_GROUP", "TAYLOR_SQUARES", "TAYLOR_SUMS", "TAYLOR_CONSTANTS",
-                                           "TAYLOR_STATE", "TAYLOR_PAIRED", "TAYLOR_SQUARED",
-                                           "TAYLOR_PER_PAIR", "SERIES_MODEL", "SERIES_FLOOR", "SERIES_BEGIN",
-                                           "SERIES_REST", "SERIES_AT", "START_MODEL", "THE_START",
-                                           "START_ALLOWED", "START_RATES", "HOLD_MODEL", "THE_HOLD", "HOLD_RESIDUALS",
-                                           "HOLD_CHANGE", "HOLD_ROUNDING", "HOLD_MET"};
+#define LAST_STAGE(name, NAME, kind, dense, order, line, words) #NAME "_LAST "
+static const char header_names[] =
+    "REAL API STATIC IMPLEMENTATION IMPLEMENTED H_INCLUDED MASK LANE LANES LIBM OWN COMPLEX ABS BITS IS_float "
+    "IS_double IS_long FMA NO_FMA INLINE TRY WHERE FAILED STATUS EUNMET PIVOTS PIVOTS_STATUS OK ABI WITH_NAMES "
+    "ESINGULAR ESTEP NQ NZ NY NC NHOLONOMIC NP NU NEV NOUT NNZ NNZ_IDA ENEWTON ENAN EZENO ETOLERANCE ESIZE IS_FINITE "
+    "ECONTACT DEGREE LOCATE_ROWS LOCATE_UNSEEN LOCATE_ROUGH LOCATE_FINEST PRESSING_SIZE THE_MODEL LAWS MODEL "
+    "MAX_DRIFTS "
+    LAG_RUNGE_KUTTA_METHODS(LAST_STAGE)
+    "NCONTACTS NSURFACES NSLOPES OPEN SLIPS STICKS RULE_FREE NNEWTON NBAND QQ VQ VV FQ FV MOST_CORRECTIONS "
+    "PREDICTOR_DEGREE VARIATIONAL_ORDER TAYLOR_ORDER TAYLOR_COLUMNS TAYLOR_WIDTH TAYLOR_GROUP TAYLOR_SQUARES "
+    "TAYLOR_SUMS TAYLOR_CONSTANTS TAYLOR_STATE TAYLOR_PAIRED TAYLOR_SQUARED TAYLOR_PER_PAIR SERIES_MODEL "
+    "SERIES_FLOOR SERIES_BEGIN SERIES_REST SERIES_AT START_MODEL THE_START START_ALLOWED START_RATES HOLD_MODEL "
+    "THE_HOLD HOLD_RESIDUALS HOLD_CHANGE HOLD_ROUNDING HOLD_MET";
 
-/* Enumerators PREFIX_NAME of the variables, unique in the header. */
-static const char **enumerators(Header *h, CNames *taken, const char *stem, const IrVar *v, uint32_t n) {
+/* Enumerator PREFIX_STEM_NAME, unique in the header. */
+static const char *enumerator(Header *h, const char *stem, const char *name) {
+  const char *id = cased(h->a, cname_letters(h->a, name), 1);
+  return cnames_take(&h->taken, arena_printf(h->a, "%s_%s%s", h->upper, stem, id));
+}
+
+static const char **enumerators(Header *h, const char *stem, const IrVar *v, uint32_t n) {
   const char **names = ARENA_ARRAY(h->a, const char *, n + 1);
-  for (uint32_t i = 0; i < n; i++) {
-    const char *id = cased(h->a, cname_letters(h->a, v[i].name), 1);
-    names[i] = cnames_take(taken, arena_printf(h->a, "%s_%s%s", h->upper, stem, id));
-  }
+  for (uint32_t i = 0; i < n; i++) names[i] = enumerator(h, stem, v[i].name);
   return names;
 }
 
-static const char **event_enumerators(Header *h, CNames *taken) {
-  uint32_t n = h->u->events.n;
-  IrVar *v = ARENA_ARRAY(h->a, IrVar, n + 1);
-  for (uint32_t i = 0; i < n; i++) v[i].name = h->u->events.at[i].name;
-  return enumerators(h, taken, "EV_", v, n);
+static const char **event_enumerators(Header *h) {
+  const char **names = ARENA_ARRAY(h->a, const char *, h->u->events.n + 1);
+  for (uint32_t i = 0; i < h->u->events.n; i++) names[i] = enumerator(h, "EV_", h->u->events.at[i].name);
+  return names;
 }
 
-static const char **contact_enumerators(Header *h, CNames *taken) {
+static const char **contact_enumerators(Header *h) {
   uint32_t n = program_set_contacts(h->u);
-  IrVar *v = ARENA_ARRAY(h->a, IrVar, n + 1);
-  for (uint32_t i = 0; i < n; i++) v[i].name = header_contact_name(h, i);
-  return enumerators(h, taken, "CONTACT_", v, n);
+  const char **names = ARENA_ARRAY(h->a, const char *, n + 1);
+  for (uint32_t i = 0; i < n; i++) names[i] = enumerator(h, "CONTACT_", header_contact_name(h, i));
+  return names;
 }
 
 /* Switches that a motion may stick on, which alone have an index, and behind them guides. */
-static const char **surface_enumerators(Header *h, CNames *taken) {
-  uint32_t n = h->u->switches.n, guides = header_guides(h->u);
+static const char **surface_enumerators(Header *h) {
+  uint32_t n = h->u->switches.n, guides = header_guides(h->u), contacts = program_set_contacts(h->u);
   const char **names = ARENA_ARRAY(h->a, const char *, n + guides + 1);
-  for (uint32_t i = 0; i < guides; i++) {
-    IrVar v = {.name = header_contact_name(h, program_set_contacts(h->u) + i)};
-    names[n + i] = enumerators(h, taken, "SURFACE_", &v, 1)[0];
-  }
-  for (uint32_t i = 0; i < n; i++) {
-    IrVar v = {.name = h->u->switches.at[i].surface};
-    if (h->u->switches.at[i].jumps && i < h->u->nmodes) names[i] = enumerators(h, taken, "SURFACE_", &v, 1)[0];
-  }
+  for (uint32_t i = 0; i < guides; i++)
+    names[n + i] = enumerator(h, "SURFACE_", header_contact_name(h, contacts + i));
+  for (uint32_t i = 0; i < n && i < h->u->nmodes; i++)
+    if (h->u->switches.at[i].jumps) names[i] = enumerator(h, "SURFACE_", h->u->switches.at[i].surface);
   return names;
 }
 
-/* Global names of the header, which names inside functions must not hide. */
-static const char *const *globals_of(Header *h) {
-  const char **all = ARENA_ARRAY(h->a, const char *, h->taken.taken.n + 32);
-  uint32_t n = 0;
-  for (uint32_t i = 0; i < h->taken.taken.n; i++) all[n++] = h->taken.taken.at[i].name;
-  static const char *const functions[] = {"solve",   "cubic",  "spline",  "quintic",  "curve",      "interval",
-                                          "params",  "state",  "step",    "input_fn", "sincos",     "sincos2",
-                                          "sincos4", "sin",    "cos",     "lanes",    "lanes_mask", "compensated_sum",
-                                          "rates",   "gather", "scatter", "held"};
-  for (size_t i = 0; i < sizeof functions / sizeof *functions; i++)
-    all[n++] = arena_printf(h->a, "%s_%s", h->lower, functions[i]);
-  all[n++] = "singular";
-  return all;
-}
+/* Its functions that are no part of its interface. */
+static const char functions[] =
+    "solve cubic spline quintic curve interval params state step input_fn sincos sincos2 sincos4 sin cos lanes "
+    "lanes_mask compensated_sum rates gather scatter held";
 
 static Header header_new(const ProgramSet *u, const char *name, HeaderParts parts, StrBuf *out) {
   Header h = {.u = u, .parts = parts, .scene = &u->scenes.at[0], .a = u->arena, .out = out, .file = name};
@@ -104,21 +83,22 @@ static Header header_new(const ProgramSet *u, const char *name, HeaderParts part
   h.lower = cased(h.a, id, 0);
   h.event_ids = cnames_of_events(u);
   h.taken = cnames_new(h.a);
-  for (size_t i = 0; i < sizeof header_names / sizeof *header_names; i++)
-    cnames_reserve(&h.taken, arena_printf(h.a, "%s_%s", h.upper, header_names[i]));
-  h.q = enumerators(&h, &h.taken, "", u->q.at, u->q.n);
-  h.z = enumerators(&h, &h.taken, "", u->z.at, u->z.n);
-  h.p = enumerators(&h, &h.taken, "P_", u->p.at, u->p.n);
-  h.in = enumerators(&h, &h.taken, "IN_", u->u.at, u->u.n);
-  h.ev = event_enumerators(&h, &h.taken);
-  h.contacts = contact_enumerators(&h, &h.taken);
-  h.surfaces = surface_enumerators(&h, &h.taken);
-  h.outputs = enumerators(&h, &h.taken, "OUT_", h.scene->plain.at, h.scene->plain.n);
+  cnames_reserve_words(&h.taken, arena_printf(h.a, "%s_", h.upper), header_names);
+  h.q = enumerators(&h, "", u->q.at, u->q.n);
+  h.z = enumerators(&h, "", u->z.at, u->z.n);
+  h.p = enumerators(&h, "P_", u->p.at, u->p.n);
+  h.in = enumerators(&h, "IN_", u->u.at, u->u.n);
+  h.ev = event_enumerators(&h);
+  h.contacts = contact_enumerators(&h);
+  h.surfaces = surface_enumerators(&h);
+  h.outputs = enumerators(&h, "OUT_", h.scene->plain.at, h.scene->plain.n);
   CNames members = cnames_new(h.a);
   const char **fields = ARENA_ARRAY(h.a, const char *, u->p.n + 1);
   for (uint32_t i = 0; i < u->p.n; i++) fields[i] = cnames_take(&members, u->p.at[i].name);
   h.fields = fields;
-  h.globals = globals_of(&h);
+  cnames_reserve_words(&h.taken, arena_printf(h.a, "%s_", h.lower), functions);
+  cnames_reserve(&h.taken, "singular");
+  h.globals = cnames_list(&h.taken);
   return h;
 }
 
@@ -197,7 +177,7 @@ static void write_usage(const Header *h) {
       {NULL, NULL}};
   sb_puts(h->out, " *\n * In every file that uses it, and in one of them (C or C++) after #define as here:\n");
   sb_printf(h->out, " *   #define %s_IMPLEMENTATION\n *   #include \"%s.h\"\n *\n", h->upper, h->file);
-  sb_printf(h->out, " *   %s_params p;\n *   %s_state s;\n", h->lower, h->lower);
+  header_printf(h, " *   lag_params p;\n *   lag_state s;\n");
   sb_printf(h->out, " *   %s_defaults(&p); // as in scene %s\n *   %s_start(&p, &s);\n", h->lower, s->name, h->lower);
   header_template(h, loop_of(h), words);
   header_template(h, settings, words);
@@ -225,19 +205,15 @@ static void write_head(const Header *h, const char *equations) {
                                        h->lower)
                         : " * Dry friction: steps decide at each state, and go to and fro where a body sticks; `lagc "
                           "header --with moreau` adds a step that sticks.\n");
-  if (header_guides(u))
-    sb_printf(h->out, " * Guides: %s_moreau_step has their friction; other steps slide without.\n", h->lower);
+  if (header_guides(u)) header_printf(h, " * Guides: lag_moreau_step has their friction; other steps slide without.\n");
   if (header_has_method(h, "moreau") && program_set_contacts(u))
-    sb_printf(h->out, " * Contacts: %s_moreau_step follows them; other steps ignore them.\n", h->lower);
+    header_printf(h, " * Contacts: lag_moreau_step follows them; other steps ignore them.\n");
   else if (program_set_contacts(u))
-    sb_printf(h->out,
-              " * Contacts: a step ignores them. The loop below calls %s_events, %s_act and %s_hold; one without these "
-              "falls through.\n",
-              h->lower, h->lower, h->lower);
+    header_printf(h, " * Contacts: a step ignores them. The loop below calls lag_events, lag_act and lag_hold; one "
+                     "without these falls through.\n");
   if (program_set_kick(u))
-    sb_printf(h->out,
-              " * Kicks: a step ignores them. The loop below ends steps at the times of kicks, and calls %s_act.\n",
-              h->lower);
+    header_printf(
+        h, " * Kicks: a step ignores them. The loop below ends steps at the times of kicks, and calls lag_act.\n");
   if (u->events.n && !program_set_kick(u) && !u->contacts.n && !(h->parts.parts & PART_EVENTS))
     sb_puts(h->out, " * Events: a step ignores them; `lagc header --with events` adds a step that ends at them.\n");
   write_usage(h);

@@ -17,11 +17,10 @@ typedef struct {
  * output arrays. */
 CStyle model_style(const ModelFile *f, const char *const *own, const char *const *written);
 
-/* Appends the function NAME of the state around p, if there is one; in: a further array that it reads, or NULL;
- * written: its output arrays, NULL at the end. */
+/* Appends the function NAME of the state around p, if there is one; in: letters of further arrays that it reads;
+ * written: words, its output arrays. */
 void state_function(const ModelFile *f, const Prog *p, const char *name, const char *comment, const char *in,
-                    const char *const *written);
-extern const char *const one_out[]; /* the output array `out` alone */
+                    const char *written);
 
 /* Names of the arrays of the inputs' tables. */
 const char *const *model_rows_names(const ProgramSet *u);

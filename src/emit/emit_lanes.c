@@ -60,8 +60,7 @@ static uint32_t column_of(FactorColumns *c, const Store *st) {
 static FactorColumns factor_columns(const Series *s) {
   Arena *a = s->first->arena;
   FactorColumns c = {ARENA_ARRAY(a, Factors, s->width), ARENA_ARRAY(a, const Store *, s->width + s->first_square), 0};
-  for (uint32_t i = 0; i < s->next->stores.n; i++) {
-    const Store *st = &s->next->stores.at[i];
+  vec_each(const Store, st, s->next->stores) {
     if (st->array == ARRAY_A) c.of[st->index].a = column_of(&c, st);
     if (st->array == ARRAY_A && st->index >= s->first_square) c.of[st->index].b = c.of[st->index].a;
     if (st->array == ARRAY_B) c.of[st->index].b = column_of(&c, st);
@@ -116,12 +115,11 @@ static void each_sum(const Series *s, const char *text, StrBuf *out) {
     if (!written && !n) continue;
     if (!written) sb_printf(out, "    for (int g = %u; g < %u; g++) s[g] = ", from, from + n);
     else sb_printf(out, "    s[%u] = ", g);
-    for (const char *at = text; *at; at++) {
+    for (const char *at = text; *at; at++)
       if (*at != '$') sb_putc(out, *at);
       else if (*++at == 'g') sb_printf(out, written ? "%u" : "g", g);
       else if (written) sb_printf(out, "%u", *at == 'a' ? c.of[g].a : c.of[g].b);
       else sb_puts(out, *at == 'a' || i ? "g" : "TAYLOR_SUMS + g");
-    }
     sb_puts(out, ";\n");
   }
 }

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/words.h"
 #include "emit/emit_impl.h"
 #include "emit/late_text.h"
 
@@ -10,26 +11,15 @@ static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a",
 
 /* Names that the head of an emitted file defines, besides lag_... and LAG_..., which no name of a model becomes
  * (emit/cnames.c). */
-static const char *const abi_names[] = {
-    "jump_table",       "TAYLOR_COLUMNS",   "TAYLOR_SUMS",      "TAYLOR_CONSTANTS",
-    "TAYLOR_WIDTH",     "TAYLOR_LANES",     "TAYLOR_GROUP",     "TAYLOR_UNROLL",
-    "TAYLOR_UNROLL_4",  "taylor_pair",      "TAYLOR_PAIR",      "taylor_at",
-    "taylor_work",      "taylor_first",     "taylor_next",      "taylor_sums",
-    "taylor_rest",      "taylor_squares",   "TAYLOR_SQUARES",   "taylor_four",
-    "TAYLOR_WIDE",      "TAYLOR_INLINE",    "taylor_sums_wide", "taylor_squares_wide",
-    "taylor_rest_wide", "taylor_at_wide",   "taylor_part",      "taylor_part_wide",
-    "taylor_rest_any",  "taylor_at_any",    "taylor_along",     "q_table",
-    "z_table",
-    "p_table",          "u_table",          "ev_table",         "dr_table",
-    "mass_table",       "second_table",     "linear",           "curves",
-    "singular",         "constraint_table", "jacobian_table",   "inertia_table",
-    "constraints",      "contact_table",    "charge_table",     "charges",
-    "switch_table",     "taylor_far",       "taylor_add",       "by_params",
-    "by_params_table",  "params_partials",  "by_inputs",        "by_inputs_table",
-    "inputs_partials",  "formula_table",    "adjoint_of",       "adjoint_rates",
-    "adjoint_project",
-};
-enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
+static const char abi_names[] =
+    "jump_table TAYLOR_COLUMNS TAYLOR_SUMS TAYLOR_CONSTANTS TAYLOR_WIDTH TAYLOR_LANES TAYLOR_GROUP TAYLOR_UNROLL "
+    "TAYLOR_UNROLL_4 taylor_pair TAYLOR_PAIR taylor_at taylor_work taylor_first taylor_next taylor_sums taylor_rest "
+    "taylor_squares TAYLOR_SQUARES taylor_four TAYLOR_WIDE TAYLOR_INLINE taylor_sums_wide taylor_squares_wide "
+    "taylor_rest_wide taylor_at_wide taylor_part taylor_part_wide taylor_rest_any taylor_at_any taylor_along q_table "
+    "z_table p_table u_table ev_table dr_table mass_table second_table linear curves singular constraint_table "
+    "jacobian_table inertia_table constraints contact_table charge_table charges switch_table taylor_far taylor_add "
+    "by_params by_params_table params_partials by_inputs by_inputs_table inputs_partials formula_table adjoint_of "
+    "adjoint_rates adjoint_project";
 
 /* --- identifiers --- */
 
@@ -52,37 +42,30 @@ const char *const *model_rows_names(const ProgramSet *u) {
 }
 
 const char *model_id(Arena *a, const char *name) {
-  static const char *const taken[] = {"accel",
-                                      "derive", "energy", "linearise", "jumps", "taylor", "variation", "second",
-                                      "events", "act", "impact", "strike", "inputs", "params", "start", "observe",
-                                      "outputs", "forces", "options", "monitors", "measures", "program", "scenes",
-                                      "curves", "exact", "exact_of", "residuals", "matrices", "charge_values",
-                                      "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws",
-                                      "guide_loads", "size_values", "size_table", "correct_positions",
-                                      "correct_velocities", "inverse_dynamics", "adjoint", "adjoint_rates",
-                                      "adjoint_project", "families", "kepler_part", "kepler_part_at",
-                                      "kepler_part_values"};
+  static const char taken[] =
+      "accel derive energy linearise jumps taylor variation second events act impact strike inputs params start "
+      "observe outputs forces options monitors measures program scenes curves exact exact_of residuals matrices "
+      "charge_values charge_powers switch_values switch_rates switch_grips contact_laws guide_loads size_values "
+      "size_table correct_positions correct_velocities inverse_dynamics adjoint adjoint_rates adjoint_project "
+      "families kepler_part kepler_part_at kepler_part_values";
   const char *id = cname(a, name);
-  int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
-  for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
-  for (int i = 0; i < N_ABI_NAMES; i++) clash |= strcmp(id, abi_names[i]) == 0;
+  int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0 || has_word(taken, id) || has_word(abi_names, id);
   return clash ? arena_printf(a, "%s_model", id) : id;
 }
 
 static const char *const *globals_of(const ProgramSet *u, const char *name) {
-  uint32_t n = N_ABI_NAMES, tables = u->inputs->tables.n, max = n + 8 * u->scenes.n + tables + 2;
-  const char **all = ARENA_ARRAY(u->arena, const char *, max);
-  memcpy(all, abi_names, sizeof abi_names);
-  if (!name) return all;
-  all[n++] = name;
-  for (uint32_t i = 0; i < tables; i++) all[n++] = model_rows_names(u)[i];
-  static const char *const lists[] = {"outputs", "forces", "options", "monitors", "measures", "exact_of", "given"};
+  CNames all = cnames_new(u->arena);
+  cnames_reserve_words(&all, "", abi_names);
+  if (!name) return cnames_list(&all);
+  cnames_reserve(&all, name);
+  for (uint32_t i = 0; i < u->inputs->tables.n; i++) cnames_reserve(&all, model_rows_names(u)[i]);
   for (uint32_t i = 0; i < u->scenes.n; i++) {
-    const char *id = scene_id(u, i);
-    all[n++] = arena_printf(u->arena, "%s_%s", name, id);
-    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) all[n++] = arena_printf(u->arena, "%s_%s", lists[k], id);
+    const char *id = scene_id(u, i), *lists[] = {name,       "outputs",  "forces",   "options",
+                                                 "monitors", "measures", "exact_of", "given"};
+    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++)
+      cnames_reserve(&all, arena_printf(u->arena, "%s_%s", lists[k], id));
   }
-  return all;
+  return cnames_list(&all);
 }
 
 /* --- functions --- */
@@ -93,8 +76,6 @@ void model_flags(unsigned flags, const char *const *names, uint32_t n, StrBuf *o
     if (flags >> i & 1) sb_printf(out, "%s%s", some++ ? " | " : "", names[i]);
   if (!some) sb_putc(out, '0');
 }
-
-const char *const one_out[] = {"out", NULL};
 
 CStyle model_style(const ModelFile *f, const char *const *own, const char *const *written) {
   return (CStyle){.prefix = "LAG",
@@ -113,33 +94,32 @@ static int is_seldom_called(const ProgramSet *u, const Prog *p) {
 }
 
 void state_function(const ModelFile *f, const Prog *p, const char *name, const char *comment, const char *in,
-                    const char *const *written) {
-  const char *own[14] = {"self", "t", "q", "v", "z", "p", "u"};
+                    const char *written) {
+  const char *own[14] = {"self", "t", "q", "v", "z", "p", "u"}, *out[6];
   uint32_t n = 7, outputs = 0;
   StrBuf head = strbuf(f->a);
   if (!p) return;
-  while (written[outputs]) outputs++;
+  while ((out[outputs] = word_at(f->a, written, outputs)) != NULL) outputs++;
   sb_printf(&head,
             "static int %s(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    "
             "const LAG_REAL *p, const LAG_REAL *u",
             name);
-  for (; in && *in; in++) sb_printf(&head, ", const LAG_REAL *%s", own[n++] = arena_strndup(f->a, in, 1));
+  for (; *in; in++) sb_printf(&head, ", const LAG_REAL *%s", own[n++] = arena_strndup(f->a, in, 1));
   int wraps = n > 7 || outputs > 2;
   for (uint32_t k = 0; k < outputs; k++)
-    sb_printf(&head, "%s LAG_REAL *%s", !k && wraps ? ",\n   " : ",", own[n++] = written[k]);
+    sb_printf(&head, "%s LAG_REAL *%s", !k && wraps ? ",\n   " : ",", own[n++] = out[k]);
   sb_puts(&head, ", LAG_REAL *w)");
   own[n] = "w";
-  CStyle st = model_style(f, own, written);
+  CStyle st = model_style(f, own, out);
   st.prefer_short_code = is_seldom_called(f->u, p);
   CFunction c = {.comment = comment, .head = sb_text(&head), .returns = 1};
   cfunction(p, &st, &c, f->out);
 }
 
 static void accel(const ModelFile *f) {
-  static const char *const written[] = {"a", "zd", NULL};
   const char *what = !f->u->z.n ? "Accelerations" : f->u->q.n ? "Accelerations and rates" : "Rates";
-  state_function(f, f->u->accel, "accel", arena_printf(f->a, "%s: %s.", what, op_count_text(f->u->accel, f->a)), NULL,
-                 written);
+  state_function(f, f->u->accel, "accel", arena_printf(f->a, "%s: %s.", what, op_count_text(f->u->accel, f->a)), "",
+                 "a zd");
 }
 
 void emit_accel(const ProgramSet *u, StrBuf *out) {
@@ -147,20 +127,18 @@ void emit_accel(const ProgramSet *u, StrBuf *out) {
 }
 
 static void emit_variation(const ModelFile *f) {
-  static const char *const written[] = {"Lq", "Lv", "Q", NULL}, *const derivatives[] = {"h", NULL};
   const ProgramSet *u = f->u;
   if (!u->variation) return;
   state_function(f, u->variation, "variation", "dL/dq, the momenta dL/dq', and the generalised forces outside of L.",
-                 NULL, written);
+                 "", "Lq Lv Q");
   state_function(f, u->second, "second",
-                 arena_printf(f->a, "Their nonzero derivatives: %s.", op_count_text(u->second, f->a)), NULL,
-                 derivatives);
+                 arena_printf(f->a, "Their nonzero derivatives: %s.", op_count_text(u->second, f->a)), "", "h");
 }
 
 static void emit_kepler(const ModelFile *f) {
   const ProgramSet *u = f->u;
   if (!u->kepler) return;
-  state_function(f, u->kepler, "kepler_part_values", "Masses of the bodies; k of terms -k/r.", NULL, one_out);
+  state_function(f, u->kepler, "kepler_part_values", "Masses of the bodies; k of terms -k/r.", "", "out");
   sb_puts(f->out, "\nstatic const int kepler_part_at[] = {");
   for (uint32_t i = 0; i < u->kepler_at.n; i++)
     sb_printf(f->out, "%s%u", !i ? "" : i % 16 ? ", " : ",\n  ", u->kepler_at.at[i]);
@@ -172,21 +150,18 @@ static void emit_inverse(const ModelFile *f) {
   const Prog *p = f->u->inverse;
   if (p)
     state_function(f, p, "inverse_dynamics",
-                   arena_printf(f->a, "Forces that the accelerations a need: %s.", op_count_text(p, f->a)), "a",
-                   one_out);
+                   arena_printf(f->a, "Forces that the accelerations a need: %s.", op_count_text(p, f->a)), "a", "out");
 }
 
 /* Newton's law of impact for the contact whose constraint is `row`, which its input closes. */
 static void emit_strike(const ModelFile *f) {
-  static const char *const written[] = {"v1", NULL};
   const ProgramSet *u = f->u;
   if (!u->impact) return;
   state_function(f, u->impact, "impact", "Velocities after the impact of the contact whose entry of g is 1.", "g",
-                 written);
+                 "v1");
   sb_printf(f->out,
             "\nstatic int strike(const void *self, int row, int input, LAG_REAL t, const LAG_REAL *q, const LAG_REAL "
-            "*v,\n    "
-            "const LAG_REAL *z, const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *v1, LAG_REAL *w) {\n"
+            "*v,\n    const LAG_REAL *z, const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *v1, LAG_REAL *w) {\n"
             "  LAG_REAL g[%u], with[%u];\n"
             "  for (int i = 0; i < %u; i++) g[i] = LAG_C(0.0);\n  for (int i = 0; i < %u; i++) with[i] = u[i];\n"
             "  g[row] = with[input] = LAG_C(1.0);\n  return impact(self, t, q, v, z, p, with, g, v1, w);\n}\n",
@@ -194,16 +169,15 @@ static void emit_strike(const ModelFile *f) {
 }
 
 static void emit_events(const ModelFile *f) {
-  static const char *const written[] = {"q1", "v1", "z1", NULL};
   const ProgramSet *u = f->u;
   const char *const *id = u->events.n ? cnames_of_events(u) : NULL;
   if (!id) return;
-  state_function(f, u->event_values, "events", "An event happens where its function changes sign.", NULL, one_out);
+  state_function(f, u->event_values, "events", "An event happens where its function changes sign.", "", "out");
   emit_strike(f);
   for (uint32_t i = 0; i < u->events.n; i++)
     if (!program_set_striking_contact(u, i))
       state_function(f, u->events.at[i].action, arena_printf(f->a, "act_%s", id[i]),
-                     arena_printf(f->a, "What the event %s does.", u->events.at[i].name), NULL, written);
+                     arena_printf(f->a, "What the event %s does.", u->events.at[i].name), "", "q1 v1 z1");
   sb_puts(
       f->out,
       "\nstatic int act(const void *self, int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n"
@@ -225,13 +199,12 @@ static void emit_switches(const ModelFile *f) {
   const ProgramSet *u = f->u;
   if (!u->switches.n) return;
   state_function(f, u->switch_values, "switch_values",
-                 "Switching functions: forces jump, or have a corner, where one of them is 0.", NULL, one_out);
-  state_function(f, u->switch_rates, "switch_rates", "Their rates.", NULL, one_out);
-  state_function(f, u->switch_grips, "switch_grips", "Static limits, relative to the force on a sliding body.", NULL,
-                 one_out);
+                 "Switching functions: forces jump, or have a corner, where one of them is 0.", "", "out");
+  state_function(f, u->switch_rates, "switch_rates", "Their rates.", "", "out");
+  state_function(f, u->switch_grips, "switch_grips", "Static limits, relative to the force on a sliding body.", "",
+                 "out");
   sb_puts(f->out, "\nstatic const lag_switch switch_table[] = {\n");
-  for (uint32_t i = 0; i < u->switches.n; i++) {
-    const IrSwitch *s = &u->switches.at[i];
+  vec_each(const IrSwitch, s, u->switches) {
     sb_printf(f->out, "  {%s, %s, %u, %d, %d, %d, %d},\n", c_string(f->a, s->surface), c_string(f->a, s->text),
               u->lines ? s->line : 0, s->jumps, s->is_floor, s->is_timed, s->nonnegative);
   }
@@ -242,14 +215,12 @@ static void emit_sizes(const ModelFile *f) {
   if (!f->u->sizes.n) return;
   if (f->u->size_values)
     state_function(f, f->u->size_values, "size_values",
-                   "Sizes of friction, inertias and coefficients, of parameters alone.", NULL, one_out);
+                   "Sizes of friction, inertias and coefficients, of parameters alone.", "", "out");
   if (f->u->moving_sizes)
-    state_function(f, f->u->moving_sizes, "moving_sizes", "Sizes of friction that change along a run.", NULL, one_out);
+    state_function(f, f->u->moving_sizes, "moving_sizes", "Sizes of friction that change along a run.", "", "out");
   sb_puts(f->out, "\nstatic const lag_size size_table[] = {\n");
-  for (uint32_t i = 0; i < f->u->sizes.n; i++) {
-    const IrSize *s = &f->u->sizes.at[i];
+  vec_each(const IrSize, s, f->u->sizes)
     sb_printf(f->out, "  {%s, %s, %d, %d},\n", c_string(f->a, s->what), c_string(f->a, s->text), s->open, s->part);
-  }
   sb_puts(f->out, "};\n");
 }
 
@@ -262,13 +233,12 @@ static void emit_charges(const ModelFile *f) {
   };
   const ProgramSet *u = f->u;
   if (!u->charges.n) return;
-  state_function(f, u->charge_values, "charge_values", "The charges of symmetries, and the scales of their drifts.",
-                 NULL, one_out);
-  state_function(f, u->charge_powers, "charge_powers", "Rates of change of the energy and of these charges.", NULL,
-                 one_out);
+  state_function(f, u->charge_values, "charge_values", "The charges of symmetries, and the scales of their drifts.", "",
+                 "out");
+  state_function(f, u->charge_powers, "charge_powers", "Rates of change of the energy and of these charges.", "",
+                 "out");
   sb_puts(f->out, "\nstatic const lag_charge charge_table[] = {\n");
-  for (uint32_t i = 0; i < u->charges.n; i++) {
-    const IrCharge *c = &u->charges.at[i];
+  vec_each(const IrCharge, c, u->charges) {
     sb_printf(f->out, "  {%s, %s, ", c_string(f->a, c->name), c_string(f->a, c->unit));
     model_flags(c->flags, flags, CHARGE_FLAGS, f->out);
     sb_puts(f->out, "},\n");
@@ -319,13 +289,12 @@ void emit_entries(const char *name, const IrEntry *at, uint32_t n, StrBuf *out) 
 }
 
 static void emit_jumps(const ModelFile *f) {
-  static const char *const written[] = {"d", NULL};
   const ProgramSet *u = f->u;
   enum { A_LINE = 8 };
   if (!u->jumps) return;
   state_function(f, u->jumps, "jumps",
-                 "Linearised events: derivatives of their functions and of the values that their actions set.", NULL,
-                 written);
+                 "Linearised events: derivatives of their functions and of the values that their actions set.", "",
+                 "d");
   sb_puts(f->out, "\nstatic const lag_jump jump_table[] = {");
   for (uint32_t i = 0; i < u->jump_at.n; i++)
     sb_printf(f->out, "%s{%u, %d, %u},", i % A_LINE ? " " : "\n  ", u->jump_at.at[i].event, u->jump_at.at[i].row,
@@ -338,39 +307,36 @@ int model_has_linear(const ProgramSet *u) { return u->linear && !u->constraints.
 
 /* Derivatives by parameters or inputs, with their table. */
 static void emit_partials(const ModelFile *f, const Prog *p, const IrEntry *at, uint32_t n, const char *by) {
-  static const char *const written[] = {"dr", "M", NULL};
   const char *table = arena_printf(f->a, "by_%s_table", by);
   state_function(f, p, arena_printf(f->a, "by_%s", by),
                  arena_printf(f->a, "The same, dr: each equation by the %s; M: %s.", by, op_count_text(p, f->a)), "a",
-                 written);
+                 "dr M");
   emit_entries(table, at, n, f->out);
   sb_printf(f->out, "\nstatic const lag_partials %s = {%u, %s, by_%s};\n", arena_printf(f->a, "%s_partials", by), n,
             n ? table : "NULL", by);
 }
 
 static void emit_adjoint(const ModelFile *f) {
-  static const char *const written[] = {"by_y", "by_up", "d", NULL}, *const rates[] = {"a", "zd", "l", NULL};
   const ProgramSet *u = f->u;
   state_function(f, u->adjoint, "adjoint",
                  arena_printf(f->a, "Reverse mode: products g^T dF/dy and by inputs and parameters: %s.",
                               op_count_text(u->adjoint, f->a)),
-                 "ag", written);
-  state_function(f, u->adjoint_rates, "adjoint_rates", "Accelerations, rates and multipliers.", NULL, rates);
+                 "ag", "by_y by_up d");
+  state_function(f, u->adjoint_rates, "adjoint_rates", "Accelerations, rates and multipliers.", "", "a zd l");
   state_function(f, u->adjoint_projection, "adjoint_project",
-                 "Transpose of the projection of small changes g onto the constraints.", "g", written);
+                 "Transpose of the projection of small changes g onto the constraints.", "g", "by_y by_up d");
   emit_entries("formula_table", u->formulas_at.at, u->formulas_at.n, f->out);
   sb_printf(f->out, "\nstatic const lag_adjoint adjoint_of = {%u, %s, adjoint%s};\n", u->formulas_at.n,
             u->formulas_at.n ? "formula_table" : "NULL", u->adjoint_rates ? ", adjoint_rates, adjoint_project" : "");
 }
 
 static void emit_linear(const ModelFile *f) {
-  static const char *const written[] = {"dr", "M", NULL};
   const ProgramSet *u = f->u;
   if (!model_has_linear(u)) return;
   const char *comment =
       arena_printf(f->a, "The linearisation, dr: each equation by each component of its state; M: %s.",
                    op_count_text(u->linear, f->a));
-  state_function(f, u->linear, "linearise", comment, "a", written);
+  state_function(f, u->linear, "linearise", comment, "a", "dr M");
   emit_entries("dr_table", u->linear_dr.at, u->linear_dr.n, f->out);
   emit_entries("mass_table", u->linear_mass.at, u->linear_mass.n, f->out);
   emit_jumps(f);
@@ -405,11 +371,9 @@ static void constraint_table(const ProgramSet *u, StrBuf *out) {
 }
 
 static void emit_contacts(const ModelFile *f) {
-  static const char *const loads[] = {"d", "force", "load", NULL};
   if (!f->u->contacts.n) return;
   sb_puts(f->out, "\nstatic const lag_contact contact_table[] = {\n");
-  for (uint32_t i = 0; i < f->u->contacts.n; i++) {
-    const IrContact *c = &f->u->contacts.at[i];
+  vec_each(const IrContact, c, f->u->contacts) {
     sb_printf(f->out, "  {%u, %u, %u, %u, %d, %u, %d, %d},\n", c->input, c->constraint, c->impact, c->release,
               c->is_tangent, c->force, c->conditional, c->law);
   }
@@ -421,16 +385,14 @@ static void emit_contacts(const ModelFile *f) {
                 f->u->contacts.at[i].parts == 1 ? (int)f->u->contacts.at[i].turn : -1);
   if (program_set_guides(f->u)) sb_puts(f->out, "};\n");
   state_function(f, f->u->contact_laws, "contact_laws",
-                 "Friction, tangential restitution and multiplier of each contact; static friction beside a gap.", NULL,
-                 one_out);
+                 "Friction, tangential restitution and multiplier of each contact; static friction beside a gap.", "",
+                 "out");
   state_function(f, f->u->guide_loads, "guide_loads",
                  "The least change d of velocities with A d = g; force: M d; load: forces of guides by that.", "g",
-                 loads);
+                 "d force load");
 }
 
 static void emit_constraints(const ModelFile *f) {
-  static const char *const residuals[] = {"c", "r", NULL}, *const matrices[] = {"A", "M", NULL},
-                           *const change[] = {"d", "force", NULL};
   const IrConstraints *k = &f->u->constraints;
   if (!k->of.n) return;
   state_function(
@@ -438,19 +400,19 @@ static void emit_constraints(const ModelFile *f) {
       k->nkept > k->nholonomic
           ? "What the constraints say is zero, or stays as it is at the start: c on positions; r on velocities."
           : "What the constraints say is zero: c on positions, r on velocities.",
-      NULL, residuals);
+      "", "c r");
   state_function(f, k->matrices, "matrices",
-                 "A, the derivatives of r by the velocities, and the mass matrix: the entries that are not zero.", NULL,
-                 matrices);
+                 "A, the derivatives of r by the velocities, and the mass matrix: the entries that are not zero.", "",
+                 "A M");
   int both = k->velocity == k->position;
   if (k->nkept)
     state_function(f, k->position, "correct_positions",
                    both ? "The least change d with A d = g, for positions or velocities; force: M d."
                         : "The least change d of positions with A d = g; force: M d.",
-                   "g", change);
+                   "g", "d force");
   if (!both)
     state_function(f, k->velocity, "correct_velocities", "The least change d of velocities with A d = g; force: M d.",
-                   "g", change);
+                   "g", "d force");
   constraint_table(f->u, f->out);
   emit_entries("jacobian_table", k->jacobian.at, k->jacobian.n, f->out);
   emit_entries("inertia_table", k->mass.at, k->mass.n, f->out);
@@ -501,7 +463,7 @@ static void emit_equations(const ModelFile *f) {
   emit_derive(f);
   accel(f);
   state_function(f, f->u->energy, "energy",
-                 "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", NULL, one_out);
+                 "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", "", "out");
   emit_events(f);
   emit_inputs(f);
   emit_constraints(f);

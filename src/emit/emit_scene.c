@@ -113,20 +113,19 @@ static void emit_observe(const ModelFile *f, const IrScene *s, const char *id) {
   const char *comment = arena_printf(f->a, "Outputs of the scene %s.", s->name);
   uint32_t n = u->u.n + u->nmodes + s->exact_of.n;
   if (!s->actions.n) {
-    state_function(f, s->observe, arena_printf(f->a, "observe_%s", id), comment, NULL, one_out);
+    state_function(f, s->observe, arena_printf(f->a, "observe_%s", id), comment, "", "out");
     return;
   }
   sb_puts(out, "\n#ifndef LAG_LANES");
-  state_function(f, s->momenta, arena_printf(f->a, "momenta_%s", id), "The momenta dL/dq'.", NULL, one_out);
+  state_function(f, s->momenta, arena_printf(f->a, "momenta_%s", id), "The momenta dL/dq'.", "", "out");
   for (uint32_t i = 0; i < s->actions.n; i++) {
     const IrAction *a = &s->actions.at[i];
     const char *what = s->momenta ? "H, dH/dp, d2H/dp2, dH/dq for the action of %s; v holds momenta."
                                   : "H, dH/dp, d2H/dp2, dH/dq for the action of %s.";
-    state_function(f, a->curve, arena_printf(f->a, "curve_%s_%u", id, i), arena_printf(f->a, what, a->name), NULL,
-                   one_out);
+    state_function(f, a->curve, arena_printf(f->a, "curve_%s_%u", id, i), arena_printf(f->a, what, a->name), "", "out");
   }
   state_function(f, s->observe, arena_printf(f->a, "values_%s", id),
-                 arena_printf(f->a, "%s Action variables stand behind the inputs.", comment), NULL, one_out);
+                 arena_printf(f->a, "%s Action variables stand behind the inputs.", comment), "", "out");
   sb_printf(
       out,
       "\nstatic int observe_%s(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n"
@@ -148,8 +147,7 @@ static void emit_scene_lists(const ProgramSet *u, const IrScene *s, const char *
   table_vars(arena_printf(u->arena, "outputs_%s", id), s->outputs.at, s->outputs.n, u->arena, out);
   if (s->options.n) {
     sb_printf(out, "\nstatic const lag_option options_%s[] = {\n", id);
-    for (uint32_t i = 0; i < s->options.n; i++) {
-      const IrOption *o = &s->options.at[i];
+    vec_each(const IrOption, o, s->options) {
       sb_printf(out, "  {%s, %s, %s},\n", c_string(u->arena, o->name), table_number(u->arena, o->value, NULL),
                 o->text ? c_string(u->arena, o->text) : "NULL");
     }
@@ -157,8 +155,7 @@ static void emit_scene_lists(const ProgramSet *u, const IrScene *s, const char *
   }
   if (s->monitors.n) {
     sb_printf(out, "\nstatic const lag_monitor monitors_%s[] = {\n", id);
-    for (uint32_t i = 0; i < s->monitors.n; i++) {
-      const IrMonitor *m = &s->monitors.at[i];
+    vec_each(const IrMonitor, m, s->monitors) {
       sb_printf(out, "  {%s, %d, %s, %d},\n", c_string(u->arena, m->name), m->output,
                 table_number(u->arena, m->limit, NULL), m->absolute);
     }
@@ -169,10 +166,8 @@ static void emit_scene_lists(const ProgramSet *u, const IrScene *s, const char *
 static void emit_measures(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
   if (!s->measures.n) return;
   sb_printf(out, "\nstatic const lag_measure measures_%s[] = {\n", id);
-  for (uint32_t i = 0; i < s->measures.n; i++) {
-    const IrMeasure *m = &s->measures.at[i];
+  vec_each(const IrMeasure, m, s->measures)
     sb_printf(out, "  {%s, %s},\n", c_string(u->arena, m->name), c_string(u->arena, m->text));
-  }
   sb_puts(out, "};\n");
 }
 
@@ -185,8 +180,7 @@ static void emit_indices(const char *name, const int *at, int n, StrBuf *out) {
 static void emit_shapes(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
   if (!s->shapes.n) return;
   sb_printf(out, "\nstatic const lag_shape shapes_%s[] = {\n", id);
-  for (uint32_t i = 0; i < s->shapes.n; i++) {
-    const IrShape *x = &s->shapes.at[i];
+  vec_each(const IrShape, x, s->shapes) {
     sb_printf(out, "  {%s, %s, ", c_string(u->arena, x->kind), c_string(u->arena, x->role));
     sb_printf(out, "%s, .count = %d", x->text ? c_string(u->arena, x->text) : "NULL", x->count);
     emit_indices("a", x->a, 3, out);

@@ -195,7 +195,7 @@ static size_t unrolled(const TaylorWriter *w, const char *begin, const char *tex
  * sums. */
 static void fill(const TaylorWriter *w, const char *text, const char *suffix, const char *type, const char *attribute) {
   StrBuf *out = w->out;
-  for (const char *begin = text; *text; text++) {
+  for (const char *begin = text; *text; text++)
     if (*text == '$') sb_puts(out, suffix);
     else if (*text == '#' && text[1] == ' ') sb_puts(out, type);
     else if (*text == '#' && text[1] == ')') sb_puts(out, type);
@@ -208,7 +208,6 @@ static void fill(const TaylorWriter *w, const char *text, const char *suffix, co
     else if (*text == '%' && text[1] == ' ')
       sb_puts(out, !w->lower && w->s->first_square == w->s->group ? "    TAYLOR_UNROLL_4\n" : "");
     else sb_putc(out, *text);
-  }
 }
 
 /* Column of order 0 that holds the rate of column i of the state. */

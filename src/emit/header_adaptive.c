@@ -4,7 +4,7 @@
 #include "emit/header_impl.h"
 #include "emit/header_adaptive_text.h"
 
-void header_adaptive_declare(const Header *h) { csupport_expand(type, h->upper, h->lower, h->out); }
+void header_adaptive_declare(const Header *h) { header_printf(h, "%s", type); }
 
 void header_move(const Header *h) { header_template(h, move, NULL); }
 
@@ -15,6 +15,6 @@ void header_adaptive_define(const Header *h, const char *longest) {
   header_template(h, begin, words);
   header_section(h, "first_step");
   header_template(h, adapt, NULL);
-  csupport_expand("\nLAG_API void lag_adaptive_begin(lag_adaptive *w, LAG_REAL tolerance)", h->upper, h->lower, h->out);
+  header_printf(h, "\nLAG_API void lag_adaptive_begin(lag_adaptive *w, LAG_REAL tolerance)");
   header_template(h, adaptive_begin, words);
 }

@@ -168,12 +168,11 @@ const char *header_libraries(const Header *h) {
 void header_callbacks_include(const Header *h) {
   if (has(h, PART_GSL)) sb_puts(h->out, "#include <gsl/gsl_odeiv2.h>\n");
   if (has(h, SUNDIALS))
-    csupport_expand("#include <sundials/sundials_matrix.h>\n#include <sundials/sundials_nvector.h>\n#include "
-                    "<sundials/sundials_types.h>\n"
-                    "#include <sunmatrix/sunmatrix_dense.h>\n#include <sunmatrix/sunmatrix_sparse.h>\n"
-                    "#ifndef LAG_REAL\n#if defined(SUNDIALS_SINGLE_PRECISION)\n#define LAG_REAL float\n"
-                    "#elif defined(SUNDIALS_EXTENDED_PRECISION)\n#define LAG_REAL long double\n#endif\n#endif\n",
-                    h->upper, h->lower, h->out);
+    header_printf(h, "#include <sundials/sundials_matrix.h>\n#include <sundials/sundials_nvector.h>\n#include "
+                     "<sundials/sundials_types.h>\n"
+                     "#include <sunmatrix/sunmatrix_dense.h>\n#include <sunmatrix/sunmatrix_sparse.h>\n"
+                     "#ifndef LAG_REAL\n#if defined(SUNDIALS_SINGLE_PRECISION)\n#define LAG_REAL float\n"
+                     "#elif defined(SUNDIALS_EXTENDED_PRECISION)\n#define LAG_REAL long double\n#endif\n#endif\n");
   if (has(h, WITH_DATA)) sb_putc(h->out, '\n');
 }
 
@@ -182,19 +181,17 @@ void header_callbacks_declare(const Header *h) {
   const HeaderWord work[] = {{"WORK", sparse ? "  LAG_REAL J[LAG_NY*LAG_NY]; /* work space */\n" : ""}, {NULL, NULL}};
   if (has(h, WITH_DATA)) header_template(h, data_struct, work);
   if (sparse)
-    sb_printf(h->out,
-              "\n/* Nonzero entries of Jacobians, of rates and of IDA's residual, for matrices of compressed columns "
-              "(CSC_MAT); dense ones do as well. */\n"
-              "enum { %s_NNZ = %u, %s_NNZ_IDA = %u };\n",
-              h->upper, entries(h, jac_pattern(h)), h->upper, entries(h, residual_pattern(h)));
+    header_printf(h,
+                  "\n/* Nonzero entries of Jacobians, of rates and of IDA's residual, for matrices of compressed "
+                  "columns (CSC_MAT); dense ones do as well. */\nenum { LAG_NNZ = %u, LAG_NNZ_IDA = %u };\n",
+                  entries(h, jac_pattern(h)), entries(h, residual_pattern(h)));
   if (has(h, PART_CASADI))
     sb_puts(h->out, "\n#ifndef casadi_real\n#define casadi_real double\n#endif\n#ifndef casadi_int\n#define casadi_int "
                     "long long int\n#endif\n");
   for (int i = 0; i < CALLBACKS; i++) {
     const HeaderWord w[] = {{"LIBRARY", callbacks[i].name}, {"FUNCTION", callbacks[i].name}, {NULL, NULL}};
     if (!is_wanted(h, i)) continue;
-    if (callbacks[i].doc)
-      csupport_expand(arena_printf(h->a, "\n/* %s */\n", callbacks[i].doc), h->upper, h->lower, h->out);
+    if (callbacks[i].doc) header_printf(h, "\n/* %s */\n", callbacks[i].doc);
     header_template(h, prototypes(h, callbacks[i].text), w);
   }
 }

@@ -15,9 +15,7 @@ static const char *unit_text(const Header *h, const IrUnit *u) {
   return arena_printf(h->a, " [%s]: 1 %s is %s in SI", u->text, u->text, shortest_double(h->a, u->factor));
 }
 
-static void size(const Header *h, const char *name, uint32_t n) {
-  sb_printf(h->out, "  %s_%s = %u,\n", h->upper, name, n);
-}
+static void size(const Header *h, const char *name, uint32_t n) { header_printf(h, "  LAG_%s = %u,\n", name, n); }
 
 static void sizes(const Header *h) {
   const ProgramSet *u = h->u;
@@ -30,7 +28,7 @@ static void sizes(const Header *h) {
   size(h, "NU", u->u.n);
   size(h, "NEV", u->events.n);
   if (u->constraints.of.n) size(h, "NC", u->constraints.of.n), size(h, "NHOLONOMIC", u->constraints.nholonomic);
-  sb_printf(h->out, "  %s_NOUT = %u\n};\n", h->upper, h->scene->plain.n);
+  header_printf(h, "  LAG_NOUT = %u\n};\n", h->scene->plain.n);
 }
 
 static void indices(const Header *h, const char *comment, const char **names, const IrVar *v, uint32_t n) {
@@ -82,29 +80,25 @@ static void params_struct(const Header *h) {
     sb_printf(h->out, "  %s_REAL %s; /* %s */\n", h->upper, h->fields[i],
               comment_text(h->a, *text == ' ' ? text + 1 : text));
   }
-  sb_printf(h->out, "} %s_params;\n", h->lower);
+  header_printf(h, "} lag_params;\n");
 }
 
 static void input_type(const Header *h) {
   if (!h->u->u.n) return;
-  sb_printf(h->out,
-            "\n/* Sets those of the inputs u[%s_NU] that it knows, at time t. */\ntypedef void %s_input_fn(void "
-            "*context, %s_REAL t, %s_REAL *u);\n",
-            h->upper, h->lower, h->upper, h->upper);
+  header_printf(h, "\n/* Sets those of the inputs u[LAG_NU] that it knows, at time t. */\ntypedef void "
+                   "lag_input_fn(void *context, LAG_REAL t, LAG_REAL *u);\n");
 }
 
 static void state_struct(const Header *h) {
-  sb_printf(h->out, "\ntypedef struct %s_state {\n  %s_REAL t; /* time [s] */\n", h->lower, h->upper);
+  header_printf(h, "\ntypedef struct lag_state {\n  LAG_REAL t; /* time [s] */\n");
   if (h->u->q.n)
-    sb_printf(h->out, "  %s_REAL q[%s_NQ]; /* coordinates */\n  %s_REAL v[%s_NQ]; /* their time derivatives */\n",
-              h->upper, h->upper, h->upper, h->upper);
-  if (h->u->z.n) sb_printf(h->out, "  %s_REAL z[%s_NZ]; /* states */\n", h->upper, h->upper);
-  sb_printf(
-      h->out,
-      "  %s_REAL lost[1 + %s_NY]; /* rounding of t, q, v, z that the steps to here have lost; 0 at the start */\n",
-      h->upper, h->upper);
+    header_printf(h, "  LAG_REAL q[LAG_NQ]; /* coordinates */\n  LAG_REAL v[LAG_NQ]; /* their time derivatives */\n");
+  if (h->u->z.n) header_printf(h, "  LAG_REAL z[LAG_NZ]; /* states */\n");
+  header_printf(
+      h,
+      "  LAG_REAL lost[1 + LAG_NY]; /* rounding of t, q, v, z that the steps to here have lost; 0 at the start */\n");
   if (header_has_method(h, "moreau")) header_moreau_members(h);
-  sb_printf(h->out, "} %s_state;\n", h->lower);
+  header_printf(h, "} lag_state;\n");
 }
 
 /* --- prototypes --- */
@@ -180,29 +174,28 @@ static void declare_function(const Header *h, HeaderFn f) {
           "_defaults; with others, _hold\n"
           " * leads from there to the nearest one that obeys them.";
   if (f == FN_START && u->constraints.of.n)
-    csupport_expand("\nenum { LAG_EUNMET = -7 }; /* status: the constraints cannot be met near this state */\n",
-                    h->upper, h->lower, h->out);
-  if (f == FN_UNTIL_EVENT) csupport_expand("\nenum { LAG_EZENO = -5 };\n", h->upper, h->lower, h->out);
+    header_printf(h, "\nenum { LAG_EUNMET = -7 }; /* status: the constraints cannot be met near this state */\n");
+  if (f == FN_UNTIL_EVENT) header_printf(h, "\nenum { LAG_EZENO = -5 };\n");
   sb_puts(h->out, "\n/* ");
-  csupport_expand(doc, h->upper, h->lower, h->out);
+  header_printf(h, "%s", doc);
   if (f == FN_CHARGES) sb_printf(h->out, "\n * Symmetries: %s.", charge_names(h));
   if ((f == FN_RK4_STEP || f == FN_UNTIL_EVENT || f == FN_RHS) && u->u.n)
     sb_puts(h->out,
             "\n * u: the inputs, constant during the step, as of a digital controller; 0 for the model's formulas.");
-  const char *text = arena_printf(h->a, "%s_API %s;", h->upper, header_prototype(h, f));
   sb_puts(h->out, " */\n");
   if (f == FN_UNTIL_EVENT) {
-    csupport_expand("#ifdef LAG_LANES\n", h->upper, h->lower, h->out);
+    header_printf(h, "#ifdef LAG_LANES\n");
     header_one_state(h, "step_until_event", "make steps, look at the signs of _events, and go to an event of a lane");
     sb_puts(h->out, "#else\n");
   }
-  sb_printf(h->out, "%s\n%s", header_wrapped(h, text), f == FN_UNTIL_EVENT ? "#endif\n" : "");
+  sb_printf(h->out, "%s\n%s", header_wrapped(h, "LAG_API %s;", header_prototype(h, f)),
+            f == FN_UNTIL_EVENT ? "#endif\n" : "");
 }
 
 void header_declarations(const Header *h) {
   const ProgramSet *u = h->u;
   header_callbacks_include(h);
-  csupport_expand(options, h->upper, h->lower, h->out);
+  header_printf(h, "%s", options);
   sizes(h);
   indices(h, "Coordinates: q[...], and their time derivatives v[...].", h->q, u->q.at, u->q.n);
   indices(h, "States: z[...].", h->z, u->z.at, u->z.n);

@@ -12,19 +12,14 @@
 /* --- functions around programs --- */
 
 static void accel(const Header *h) {
-  static const char *const out[] = {"a", "zd", NULL}, *const none[] = {"a", NULL};
-  const char *const *extra = !h->u->q.n ? out + 1 : h->u->z.n ? out : none;
-  const char *args = strchr(header_prototype(h, FN_ACCEL), '('), *a = h->u->q.n ? ", a" : "",
-             *zd = h->u->z.n ? ", zd" : "";
-  header_state_function(
-      h, h->u->accel, "As _accel; results may be NaN or infinite: adaptive steps then try a shorter one.",
-      header_wrapped(h, arena_printf(h->a, "static int %s_rates_at%s", h->lower, args)), extra, out, 1);
-  sb_printf(h->out, "\n%s {\n  int status = %s_rates_at(%s%s%s);\n", header_api(h, FN_ACCEL), h->lower,
-            header_state_args(h, 0, ""), a, zd);
-  if (h->u->q.n)
-    csupport_expand("  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(a, LAG_NQ)), LAG_ENAN));\n", h->upper, h->lower, h->out);
-  if (h->u->z.n)
-    csupport_expand("  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(zd, LAG_NZ)), LAG_ENAN));\n", h->upper, h->lower, h->out);
+  static const char *const out[] = {"a", "zd"};
+  header_internal_function(h, h->u->accel, "rates_at",
+                           "As _accel; results may be NaN or infinite: adaptive steps then try a shorter one.",
+                           header_rates(h), out);
+  header_printf(h, "\n%s {\n  int status = lag_rates_at(%s%s%s);\n", header_api(h, FN_ACCEL),
+                header_state_args(h, 0, ""), h->u->q.n ? ", a" : "", h->u->z.n ? ", zd" : "");
+  if (h->u->q.n) header_printf(h, "  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(a, LAG_NQ)), LAG_ENAN));\n");
+  if (h->u->z.n) header_printf(h, "  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(zd, LAG_NZ)), LAG_ENAN));\n");
   sb_puts(h->out, "  return status;\n}\n");
 }
 
@@ -33,7 +28,7 @@ static void accel(const Header *h) {
 /* The parameters in order, as each formula may use the parameters before it. */
 static void write_defaults(const Header *h, const char *head, int follow) {
   static const char *const own[] = {"p", NULL}, *const out[] = {"p"};
-  sb_printf(h->out, "\n%s {\n", head);
+  header_printf(h, "\n%s {\n", head);
   if (!h->u->p.n) sb_printf(h->out, "  p->none = 0;\n%s", follow ? "  (void)given;\n" : "");
   CStyle st = header_style(h, own, out);
   st.guard = follow ? "given" : NULL;
@@ -43,10 +38,7 @@ static void write_defaults(const Header *h, const char *head, int follow) {
 
 static void defaults(const Header *h) {
   write_defaults(h, header_api(h, FN_DEFAULTS), 0);
-  if (h->parts.follows)
-    write_defaults(
-        h, arena_printf(h->a, "static void %s_follow(%s_params *p, const unsigned char *given)", h->lower, h->lower),
-        1);
+  if (h->parts.follows) write_defaults(h, "static void lag_follow(lag_params *p, const unsigned char *given)", 1);
 }
 
 static void param(const Header *h) {
@@ -71,7 +63,7 @@ static const char *demand(const Header *h, const char *x, int sign) {
 }
 
 static void write_demand(const Header *h, const char *demand) {
-  csupport_expand(arena_printf(h->a, "  good = LAG_AND(good, %s);\n", demand), h->upper, h->lower, h->out);
+  header_printf(h, "  good = LAG_AND(good, %s);\n", demand);
 }
 
 /* lag_sizes: whether parameters have their declared signs, and the sizes that they determine. */
@@ -81,17 +73,14 @@ static void sizes(const Header *h) {
   if (u->size_values) {
     CStyle st = header_style(h, own, out);
     CFunction c = {.comment = "Sizes of friction, inertias and coefficients, of parameters alone.", .own_work = 1};
-    c.head = arena_printf(h->a, "static void %s_size_values(const %s_params *p, %s_REAL *out)", h->lower, h->lower,
-                          h->upper);
+    c.head = header_wrapped(h, "static void lag_size_values(const lag_params *p, LAG_REAL *out)");
     cfunction(u->size_values, &st, &c, h->out);
   }
-  csupport_expand("\nstatic int lag_sizes(const lag_params *p) {\n#ifdef LAG_COMPLEX /* has no order */\n  (void)p;\n  "
-                  "return LAG_OK;\n#else\n"
-                  "  const LAG_REAL zero = LAG_C(0.0);\n  LAG_MASK good = LAG_IS_FINITE(zero);\n",
-                  h->upper, h->lower, h->out);
-  if (u->size_values)
-    csupport_expand(arena_printf(h->a, "  LAG_REAL size[%u];\n  lag_size_values(p, size);\n", u->sizes.n - u->nmoving),
-                    h->upper, h->lower, h->out);
+  header_printf(h,
+                "\nstatic int lag_sizes(const lag_params *p) {\n#ifdef LAG_COMPLEX /* has no order */\n  (void)p;\n  "
+                "return LAG_OK;\n#else\n"
+                "  const LAG_REAL zero = LAG_C(0.0);\n  LAG_MASK good = LAG_IS_FINITE(zero);\n");
+  if (u->size_values) header_printf(h, "  LAG_REAL size[%u];\n  lag_size_values(p, size);\n", u->sizes.n - u->nmoving);
   else sb_puts(h->out, "  (void)p;\n");
   for (uint32_t i = 0; i < u->p.n; i++)
     if (u->p.at[i].sign) write_demand(h, demand(h, arena_printf(h->a, "p->%s", h->fields[i]), u->p.at[i].sign));
@@ -100,7 +89,7 @@ static void sizes(const Header *h) {
     write_demand(h, demand(h, size, u->sizes.at[i].open ? 1 : 2));
     if (u->sizes.at[i].part) write_demand(h, arena_printf(h->a, "LAG_NOT(%s > LAG_C(1.0))", size));
   }
-  csupport_expand("  return LAG_STATUS(LAG_NOT(good), LAG_ESIZE);\n#endif\n}\n", h->upper, h->lower, h->out);
+  header_printf(h, "  return LAG_STATUS(LAG_NOT(good), LAG_ESIZE);\n#endif\n}\n");
 }
 
 /* Whether parameters can be wrong. */
@@ -116,29 +105,23 @@ static void start(const Header *h) {
   int checks = has_sizes(h->u);
   if (checks) sizes(h);
   sb_printf(h->out, "\n%s {\n", header_api(h, FN_START));
-  if (checks || header_has(h, FN_HOLD)) sb_printf(h->out, "  int status = %s_OK;\n", h->upper);
-  if (checks) csupport_expand("  LAG_TRY(lag_sizes(p));\n", h->upper, h->lower, h->out);
+  if (checks || header_has(h, FN_HOLD)) header_printf(h, "  int status = LAG_OK;\n");
+  if (checks) header_printf(h, "  LAG_TRY(lag_sizes(p));\n");
   else if (!prog_reads(h->scene->start, ARR_P) && !header_has(h, FN_HOLD)) sb_puts(h->out, "  (void)p;\n");
   sb_printf(h->out, "  s->t = %s;\n", header_constant(h, h->scene->t0));
-  if (h->u->q.n)
-    sb_printf(h->out, "  for (int i = 0; i < %s_NQ; i++) s->q[i] = s->v[i] = %s_C(0.0);\n", h->upper, h->upper);
-  if (h->u->z.n) sb_printf(h->out, "  for (int i = 0; i < %s_NZ; i++) s->z[i] = %s_C(0.0);\n", h->upper, h->upper);
-  sb_printf(h->out, "  for (int i = 0; i <= %s_NY; i++) s->lost[i] = %s_C(0.0);\n", h->upper, h->upper);
+  if (h->u->q.n) header_printf(h, "  for (int i = 0; i < LAG_NQ; i++) s->q[i] = s->v[i] = LAG_C(0.0);\n");
+  if (h->u->z.n) header_printf(h, "  for (int i = 0; i < LAG_NZ; i++) s->z[i] = LAG_C(0.0);\n");
+  header_printf(h, "  for (int i = 0; i <= LAG_NY; i++) s->lost[i] = LAG_C(0.0);\n");
   if (header_has_method(h, "moreau")) header_moreau_start(h);
   cwrite_body(h->scene->start, &st, h->a, h->out);
-  for (uint32_t i = 0; i < h->scene->moves.n; i++) {
-    const IrMove *x = &h->scene->moves.at[i];
+  vec_each(const IrMove, x, h->scene->moves) {
     uint32_t n = h->u->q.n;
     sb_printf(h->out, "  s->%s[%s] = %s;\n", x->component < n ? "q" : "v", h->q[x->component % n],
               header_constant(h, x->value));
   }
-  if (header_has(h, FN_HOLD) && h->u->u.n)
-    sb_printf(h->out, "  %s_REAL u[%s_NU];\n  %s_inputs(s->t, p, u);\n", h->upper, h->upper, h->lower);
-  if (header_has(h, FN_HOLD))
-    csupport_expand(arena_printf(h->a, "  LAG_TRY(lag_hold(p, s%s));\n", h->u->u.n ? ", u" : ""), h->upper, h->lower,
-                    h->out);
-  sb_printf(h->out, "  return %s;\n}\n",
-            checks || header_has(h, FN_HOLD) ? "status" : arena_printf(h->a, "%s_OK", h->upper));
+  if (header_has(h, FN_HOLD) && h->u->u.n) header_printf(h, "  LAG_REAL u[LAG_NU];\n  lag_inputs(s->t, p, u);\n");
+  if (header_has(h, FN_HOLD)) header_printf(h, "  LAG_TRY(lag_hold(p, s%s));\n", h->u->u.n ? ", u" : "");
+  header_printf(h, "  return %s;\n}\n", checks || header_has(h, FN_HOLD) ? "status" : "LAG_OK");
 }
 
 static void inputs(const Header *h) {
@@ -151,44 +134,30 @@ static void inputs(const Header *h) {
 
 /* --- events --- */
 
-static const char *header_action(const Header *h, uint32_t i) {
-  return arena_printf(h->a, "%s_act_%s", h->lower, h->event_ids[i]);
-}
-
 static void action(const Header *h, uint32_t i) {
-  const char **out = ARENA_ARRAY(h->a, const char *, 4), **own = ARENA_ARRAY(h->a, const char *, 4);
-  StrBuf head = strbuf(h->a);
-  uint32_t n = 0;
-  out[0] = "q1", out[1] = "v1", out[2] = "z1";
-  if (h->u->q.n) own[n++] = "q1", own[n++] = "v1";
-  if (h->u->z.n) own[n++] = "z1";
-  sb_printf(&head, "static int %s(%s", header_action(h, i), header_state_args(h, 1, ""));
-  for (uint32_t k = 0; k < n; k++) sb_printf(&head, ", %s_REAL *%s", h->upper, own[k]);
-  sb_putc(&head, ')');
+  static const char *const out[] = {"q1", "v1", "z1"};
+  const char *q = h->u->q.n ? "LAG_REAL *q1, LAG_REAL *v1" : "", *z = h->u->z.n ? "LAG_REAL *z1" : "";
   const char *comment =
       arena_printf(h->a, "Action of the event %s: q1, v1, z1 hold the state after it.", h->u->events.at[i].name);
-  header_state_function(h, h->u->events.at[i].action, comment, header_wrapped(h, sb_text(&head)), own, out, 1);
+  header_internal_function(h, h->u->events.at[i].action, arena_printf(h->a, "act_%s", h->event_ids[i]), comment,
+                           arena_printf(h->a, "%s%s%s", q, *q && *z ? ", " : "", z), out);
 }
 
 /* Newton's law of impact for the contact whose constraint is `row`, which its input closes. */
 static void strike(const Header *h) {
-  static const char *const extra[] = {"g", "v1", NULL}, *const out[] = {"v1"};
-  const char *R = h->upper, *m = h->lower;
+  uint32_t n = h->u->constraints.of.n, nu = h->u->u.n;
   if (!h->u->impact) return;
-  StrBuf text = strbuf(h->a);
-  const char *head = arena_printf(h->a, "static int %s_impact(%s, const %s_REAL *g, %s_REAL *v1)", m,
-                                  header_state_args(h, 1, ""), R, R);
-  header_state_function(h, h->u->impact, "Velocities after the impact of the contact whose entry of g is 1.",
-                        header_wrapped(h, head), extra, out, 1);
-  head = arena_printf(h->a, "static int %s_strike(int row, int input, %s, %s_REAL *v1)", m, header_state_args(h, 1, ""),
-                      R);
-  sb_printf(&text,
-            "\n%s {\n  LAG_REAL g[%u], with[%u];\n  for (int i = 0; i < %u; i++) g[i] = LAG_C(0.0);\n  for (int i = 0; "
-            "i < %u; i++) with[i] = u[i];\n",
-            header_wrapped(h, head), h->u->constraints.of.n, h->u->u.n, h->u->constraints.of.n, h->u->u.n);
-  sb_printf(&text, "  g[row] = with[input] = LAG_C(1.0);\n  return lag_impact(t, q, v, %sp, with, g, v1);\n}\n",
-            h->u->z.n ? "z, " : "");
-  csupport_expand(sb_text(&text), R, m, h->out);
+  header_internal_function(h, h->u->impact, "impact",
+                           "Velocities after the impact of the contact whose entry of g is 1.",
+                           "const LAG_REAL *g, LAG_REAL *v1", NULL);
+  header_printf(
+      h,
+      "\n%s {\n  LAG_REAL g[%u], with[%u];\n  for (int i = 0; i < %u; i++) g[i] = LAG_C(0.0);\n  for (int i = "
+      "0; i < %u; i++) with[i] = u[i];\n",
+      header_wrapped(h, "static int lag_strike(int row, int input, %s, LAG_REAL *v1)", header_state_args(h, 1, "")), n,
+      nu, n, nu);
+  header_printf(h, "  g[row] = with[input] = LAG_C(1.0);\n  return lag_impact(t, q, v, %sp, with, g, v1);\n}\n",
+                h->u->z.n ? "z, " : "");
 }
 
 static void act(const Header *h) {
@@ -196,31 +165,28 @@ static void act(const Header *h) {
   strike(h);
   for (uint32_t i = 0; i < h->u->events.n; i++)
     if (!program_set_striking_contact(h->u, i)) action(h, i);
-  sb_printf(h->out,
-            "\n%s {\n  const %s_state was = *s;\n  for (int i = 0; i <= %s_NY; i++) s->lost[i] = %s_C(0.0);\n  switch "
-            "(event) {\n",
-            header_api(h, FN_ACT), h->lower, h->upper, h->upper);
+  header_printf(h,
+                "\n%s {\n  const lag_state was = *s;\n  for (int i = 0; i <= LAG_NY; i++) s->lost[i] = LAG_C(0.0);\n  "
+                "switch (event) {\n",
+                header_api(h, FN_ACT));
   const char *q = h->u->q.n ? ", s->q, s->v" : "", *z = h->u->z.n ? ", s->z" : "",
              *args = header_state_args(h, 0, "was.");
   for (uint32_t i = 0; i < h->u->events.n; i++) {
     const IrContact *c = program_set_striking_contact(h->u, i);
     if (c)
-      sb_printf(h->out, "    case %s: return %s_strike(%u, %s, %s, s->v);\n", h->ev[i], h->lower, c->constraint,
-                h->in[c->input], args);
+      header_printf(h, "    case %s: return lag_strike(%u, %s, %s, s->v);\n", h->ev[i], c->constraint, h->in[c->input],
+                    args);
     else
-      sb_printf(h->out, "    case %s:%s return %s(%s%s%s);\n", h->ev[i], h->u->events.at[i].stop ? " *stop = 1;" : "",
-                header_action(h, i), args, q, z);
+      header_printf(h, "    case %s:%s return lag_act_%s(%s%s%s);\n", h->ev[i],
+                    h->u->events.at[i].stop ? " *stop = 1;" : "", h->event_ids[i], args, q, z);
   }
-  sb_printf(h->out, "    default: (void)stop; return %s_OK;\n  }\n}\n", h->upper);
+  header_printf(h, "    default: (void)stop; return LAG_OK;\n  }\n}\n");
 }
 
 /* --- constraints --- */
 
 static void change(const Header *h, const Prog *p, const char *name) {
-  static const char *const extra[] = {"g", "d", "force", NULL}, *const out[] = {"d", "force"};
-  header_internal_function(
-      h, p, name, arena_printf(h->a, "const %s_REAL *g, %s_REAL *d, %s_REAL *force", h->upper, h->upper, h->upper),
-      extra, out);
+  header_internal_function(h, p, name, NULL, "const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force", NULL);
 }
 
 /* The numbers of the coordinates' units, where there are several. */
@@ -235,18 +201,16 @@ static int units(const Header *h) {
     sb_printf(&text, "%s%u", i ? ", " : "", first);
   }
   if (several)
-    sb_printf(h->out, "\nstatic const int %s_unit_of[] = {%s}; /* equal for coordinates with the same unit */\n",
-              h->lower, sb_text(&text));
+    header_printf(h, "\nstatic const int lag_unit_of[] = {%s}; /* equal for coordinates with the same unit */\n",
+                  sb_text(&text));
   return several != 0;
 }
 
 void header_hold_define(const Header *h) {
-  static const char *const extra[] = {"c", "r", NULL};
   const IrConstraints *k = &h->u->constraints;
   int both = k->position == k->velocity;
-  const char *args = header_state_args(h, 0, "s->"), *R = h->upper, *m = h->lower, *u = h->u->u.n ? ", u" : "";
-  header_internal_function(h, k->residuals, "residuals", arena_printf(h->a, "%s_REAL *c, %s_REAL *r", R, R), extra,
-                           extra);
+  const char *args = header_state_args(h, 0, "s->"), *u = h->u->u.n ? ", u" : "";
+  header_internal_function(h, k->residuals, "residuals", NULL, "LAG_REAL *c, LAG_REAL *r", NULL);
   if (k->nholonomic) change(h, k->position, both ? "correct" : "correct_positions");
   if (!both) change(h, k->velocity, "correct_velocities");
   const char *correct =
@@ -268,7 +232,7 @@ void header_hold_define(const Header *h) {
   header_template(h, hold, words);
   header_section(h, "hold");
   header_template(h, onto, words);
-  sb_printf(h->out, "\n%s {\n  return %s_onto(p, s%s, 0);\n}\n", header_api(h, FN_HOLD), m, u);
+  header_printf(h, "\n%s {\n  return lag_onto(p, s%s, 0);\n}\n", header_api(h, FN_HOLD), u);
 }
 
 /* Operation of a program that complex numbers lack, or NULL. Scales of drifts may have absolute values: LAG_ABS. */
@@ -319,30 +283,25 @@ static int solves_dense(const Header *h) {
 }
 
 void header_implementation(const Header *h) {
-  static const char *const e[] = {"e", NULL}, *const out[] = {"out", NULL}, *const g[] = {"g", NULL};
   sb_puts(h->out, "#if " FAST_MATH "\n#error \"this header needs NaN and exact sums: compile it without -ffast-math, "
                                    "-Ofast and /fp:fast\"\n#endif\n#include <math.h>\n\n");
   MathText math = {h->u, h->upper, h->lower, solves_dense(h)};
   for_scalars(h);
   sb_puts(h->out, "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n");
   math_lanes(&math, h->out);
-  csupport_expand(macros, h->upper, h->lower, h->out);
+  header_printf(h, "%s", macros);
   math_front(&math, h->out);
   defaults(h);
   param(h);
-  header_section(h, "failures");
-  header_section(h, "finite");
+  header_sections(h, "failures, finite");
   start(h);
   inputs(h);
   accel(h);
-  if (header_has(h, FN_ENERGY)) header_state_function(h, h->u->energy, NULL, header_api(h, FN_ENERGY), e, e, 0);
-  if (header_has(h, FN_CHARGES))
-    header_state_function(h, h->u->charge_values, NULL, header_api(h, FN_CHARGES), out, out, 1);
-  if (header_has(h, FN_POWERS))
-    header_state_function(h, h->u->charge_powers, NULL, header_api(h, FN_POWERS), out, out, 1);
-  if (header_has(h, FN_OBSERVE))
-    header_state_function(h, h->scene->observe_plain, NULL, header_api(h, FN_OBSERVE), out, out, 1);
-  if (header_has(h, FN_EVENTS)) header_state_function(h, h->u->event_values, NULL, header_api(h, FN_EVENTS), g, g, 1);
+  header_api_function(h, h->u->energy, FN_ENERGY);
+  header_api_function(h, h->u->charge_values, FN_CHARGES);
+  header_api_function(h, h->u->charge_powers, FN_POWERS);
+  header_api_function(h, h->scene->observe_plain, FN_OBSERVE);
+  header_api_function(h, h->u->event_values, FN_EVENTS);
   act(h);
   sb_putc(h->out, '\n');
   math_bodies(&math, h->out);

@@ -122,7 +122,6 @@ int header_parts(const ProgramSet *u, const char *list, HeaderParts *parts, cons
 
 /* --- derivatives --- */
 
-
 /* Chooses lines marked b (coordinates and states), f (states alone), n (no inputs), c (constraints), o (coordinates
  * without), which become plain ones or go. */
 static void write_marked(const Header *h, const char *text, const HeaderWord *w) {
@@ -168,29 +167,20 @@ static Words words_of(const Header *h, const char *name, const IrEntry *at, uint
 /* lag_by_NAME: derivatives of the rates by state, inputs or parameters. */
 static void define_by(const Header *h, const Prog *p, const char *name, const IrEntry *at, uint32_t n,
                       const char *columns) {
-  static const char *const all[] = {"a", "d", "m", NULL}, *const states[] = {"d", NULL}, *const out[] = {"d", "m", "A"},
-                           *const constrained[] = {"a", "g", "d", "m", "A", NULL};
-  const char *R = h->upper,
-             *q = h->u->constraints.of.n
-                      ? arena_printf(h->a, ", const %s_REAL *a, const %s_REAL *g, %s_REAL *d, %s_REAL *m, %s_REAL *A",
-                                     R, R, R, R, R)
-                  : h->u->q.n ? arena_printf(h->a, ", const %s_REAL *a, %s_REAL *d, %s_REAL *m", R, R, R)
-                              : arena_printf(h->a, ", %s_REAL *d", R);
-  const char *head =
-      arena_printf(h->a, "static void %s_partials_%s(%s%s)", h->lower, name, header_state_args(h, 1, ""), q);
-  header_state_function(h, p, NULL, header_wrapped(h, head),
-                        h->u->constraints.of.n ? constrained
-                        : h->u->q.n            ? all
-                                               : states,
-                        out, 0);
+  const char *params = h->u->constraints.of.n ? "const LAG_REAL *a, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *m, "
+                                                "LAG_REAL *A"
+                       : h->u->q.n            ? "const LAG_REAL *a, LAG_REAL *d, LAG_REAL *m"
+                                              : "LAG_REAL *d";
+  header_state_function(
+      h, p, NULL, header_wrapped(h, "static void lag_partials_%s(%s, %s)", name, header_state_args(h, 1, ""), params),
+      params, NULL, 0);
   Words w = words_of(h, name, at, n, columns);
   write_marked(h, by, w.at);
 }
 
 static void derivatives(const Header *h) {
   const ProgramSet *u = h->u;
-  const char *ny = arena_printf(h->a, "%s_NY", h->upper), *nu = arena_printf(h->a, "%s_NU", h->upper),
-             *np = arena_printf(h->a, "%s_NP", h->upper);
+  const char *ny = "LAG_NY";
   unsigned parts = h->parts.parts;
   if (parts & (PART_JAC | PART_LINEAR | PART_PARAMS) && u->q.n) {
     const HeaderWord w[] = {{"ENTRIES", header_positions(h, LIST(u->linear_mass))},
@@ -201,8 +191,8 @@ static void derivatives(const Header *h) {
     header_template(h, u->constraints.of.n ? solve_constrained : solve_mass, w);
   }
   if (parts & (PART_JAC | PART_LINEAR)) define_by(h, u->linear, "state", LIST(u->linear_dr), ny);
-  if (parts & PART_LINEAR && u->u.n) define_by(h, u->by_inputs, "inputs", LIST(u->by_inputs_dr), nu);
-  if (parts & PART_PARAMS) define_by(h, u->by_params, "params", LIST(u->by_params_dr), np);
+  if (parts & PART_LINEAR && u->u.n) define_by(h, u->by_inputs, "inputs", LIST(u->by_inputs_dr), "LAG_NU");
+  if (parts & PART_PARAMS) define_by(h, u->by_params, "params", LIST(u->by_params_dr), "LAG_NP");
   if (parts & PART_JAC) {
     Words w = words_of(h, "state", LIST(u->linear_dr), ny);
     header_begin(h, FN_JAC), write_marked(h, jac_body, NULL);
@@ -218,10 +208,8 @@ static void derivatives(const Header *h) {
 
 /* A function that zeroes out[size] and fills it by an internal one around p. */
 static void filled(const Header *h, const Prog *p, HeaderFn f, const char *name, const char *out, const char *size) {
-  const char *const own[] = {out, NULL};
-  const char *head = arena_printf(h->a, "static int %s_fill_%s(%s, %s_REAL *%s)", h->lower, name,
-                                  header_state_args(h, 1, ""), h->upper, out);
-  header_state_function(h, p, NULL, header_wrapped(h, head), own, own, 1);
+  header_internal_function(h, p, arena_printf(h->a, "fill_%s", name), NULL, arena_printf(h->a, "LAG_REAL *%s", out),
+                           NULL);
   header_begin(h, f);
   const HeaderWord w[] = {{"SIZE", size}, {"NAME", name}, {"OUT", out}, {NULL, NULL}};
   header_template(
@@ -232,10 +220,7 @@ static void filled(const Header *h, const Prog *p, HeaderFn f, const char *name,
 static void constraints(const Header *h) {
   const IrConstraints *k = &h->u->constraints;
   header_begin(h, FN_CONSTRAINTS), header_template(h, " | {\n |  return lag_residuals(ARGS, c, r);\n |}\n", NULL);
-  const char *head = arena_printf(h->a, "static int %s_matrices(%s, %s_REAL *d, %s_REAL *m)", h->lower,
-                                  header_state_args(h, 1, ""), h->upper, h->upper);
-  static const char *const out[] = {"d", "m", NULL};
-  header_state_function(h, k->matrices, NULL, header_wrapped(h, head), out, out, 1);
+  header_internal_function(h, k->matrices, "matrices", NULL, "LAG_REAL *d, LAG_REAL *m", NULL);
   const HeaderWord w[] = {{"ENTRIES", header_positions(h, LIST(k->jacobian))},
                           header_number(h, "NENTRIES", k->jacobian.n),
                           header_number(h, "NMASS", k->mass.n ? k->mass.n : 1),
@@ -259,7 +244,6 @@ static const struct {
 
 static void define_path(const Header *h) {
   int of = header_has(h, FN_UNTIL_EVENT) ? 0 : header_has_method(h, "moreau") ? 1 : 2;
-  const char *const kernels[] = {"ends", dense_outputs[of].kernel, "root", "locate"};
   StrBuf d = strbuf(h->a);
   for (uint32_t i = 0; i < h->u->events.n; i++) sb_printf(&d, "%s%d", i ? ", " : "", h->u->events.at[i].direction);
   const char *now = h->u->u.n ? ", lag_held(a->p, a->at.t, a->u, a->input, a->context, a->now)" : "";
@@ -267,8 +251,7 @@ static void define_path(const Header *h) {
                           {"MEMBERS", dense_outputs[of].members}, {"WITHIN", dense_outputs[of].within},
                           {"OF_PATH", h->u->u.n ? ", a->u" : ""}, {"FIRST", dense_outputs[of].first},
                           {"LAST", dense_outputs[of].last}, {NULL, NULL}};
-  for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
-    header_section(h, kernels[i]);
+  header_sections(h, arena_printf(h->a, "ends, %s, root, locate", dense_outputs[of].kernel));
   if (h->parts.parts & PART_PATH) header_section(h, "series");
   const LineChoice choices[] = {{'s', header_has(h, FN_UNTIL_EVENT)}, {0, 0}};
   write_marked(h, header_chosen(h, step_path, choices), w);
@@ -276,7 +259,7 @@ static void define_path(const Header *h) {
 
 static void events(const Header *h) {
   const HeaderWord w[] = {{"WITH", h->u->u.n ? ", u" : ""}, {"INPUTS", h->u->u.n ? ", u, 0, 0" : ""}, {NULL, NULL}};
-  sb_printf(h->out, "\n#if !defined(%s_LANES) && !defined(%s_COMPLEX)\n", h->upper, h->upper);
+  header_printf(h, "\n#if !defined(LAG_LANES) && !defined(LAG_COMPLEX)\n");
   define_path(h);
   if (header_has(h, FN_UNTIL_EVENT)) header_begin(h, FN_UNTIL_EVENT), header_template(h, until_event_body, w);
   sb_puts(h->out, "#endif\n");
@@ -287,7 +270,7 @@ static void events(const Header *h) {
 static void name_rows(const Header *h, const char *of, const IrVar *v, uint32_t n) {
   static const char *const least[] = {"-HUGE_VAL", "0"}, *const most[] = {"HUGE_VAL", "0"};
   if (!n) return;
-  sb_printf(h->out, "static const %s_name %s_names_%s[] = {\n", h->lower, h->lower, of);
+  header_printf(h, "static const lag_name lag_names_%s[] = {\n", of);
   for (uint32_t i = 0; i < n; i++)
     sb_printf(h->out, "  {%s, %s, %s, %s, %s, %s}%s\n", c_string(h->a, v[i].name), c_string(h->a, v[i].unit->text),
               shortest_double(h->a, v[i].unit->factor), shortest_double(h->a, v[i].unit->offset), least[v[i].sign > 0],
@@ -298,12 +281,10 @@ static void name_rows(const Header *h, const char *of, const IrVar *v, uint32_t 
 void header_name_tables(const Header *h) {
   const ProgramSet *u = h->u;
   if (!(h->parts.parts & PART_NAMES)) return;
-  sb_printf(h->out, "\n#ifdef %s_WITH_NAMES\n#include <math.h>\n", h->upper);
-  sb_printf(h->out,
-            "/* A name, its unit, the size of the unit in SI (value = factor*number + offset), and bounds of the value "
-            "in SI. */\n"
-            "typedef struct %s_name {\n  const char *name, *unit;\n  double factor, offset, least, most;\n} %s_name;\n",
-            h->lower, h->lower);
+  header_printf(h, "\n#ifdef LAG_WITH_NAMES\n#include <math.h>\n");
+  header_printf(h, "/* A name, its unit, the size of the unit in SI (value = factor*number + offset), and bounds of "
+                   "the value in SI. */\ntypedef struct lag_name {\n  const char *name, *unit;\n  double factor, "
+                   "offset, least, most;\n} lag_name;\n");
   name_rows(h, "q", u->q.at, u->q.n);
   name_rows(h, "z", u->z.at, u->z.n);
   name_rows(h, "p", u->p.at, u->p.n);
@@ -313,19 +294,16 @@ void header_name_tables(const Header *h) {
 }
 
 void header_dynamics_define(const Header *h) {
-  static const char *const b[] = {"b", NULL}, *const force[] = {"a", "force", NULL}, *const out[] = {"force"},
-                           *const lambda[] = {"lambda", NULL};
   const ProgramSet *u = h->u;
   const HeaderWord inputs[] = {{"INPUTS", u->u.n ? ", u, 0, 0" : ""}, {NULL, NULL}};
   if (header_has(h, FN_MASS)) {
-    filled(h, u->mass, FN_MASS, "mass", "M", arena_printf(h->a, "%s_NQ*%s_NQ", h->upper, h->upper));
-    header_state_function(h, u->bias, NULL, header_api(h, FN_BIAS), b, b, 1);
+    filled(h, u->mass, FN_MASS, "mass", "M", "LAG_NQ*LAG_NQ");
+    header_api_function(h, u->bias, FN_BIAS);
   }
   if (header_has(h, FN_RHS))
     header_begin(h, FN_RHS), header_template(h, " | {\n |  return lag_rates(p, t, yINPUTS, dydt);\n |}\n", inputs);
-  if (header_has(h, FN_INVERSE)) header_state_function(h, u->inverse, NULL, header_api(h, FN_INVERSE), force, out, 1);
-  if (header_has(h, FN_MULTIPLIERS))
-    header_state_function(h, u->multipliers, NULL, header_api(h, FN_MULTIPLIERS), lambda, lambda, 1);
+  header_api_function(h, u->inverse, FN_INVERSE);
+  header_api_function(h, u->multipliers, FN_MULTIPLIERS);
   derivatives(h);
   header_outputs_define(h);
   if (header_has(h, FN_CONSTRAINTS)) constraints(h);

@@ -55,26 +55,24 @@ void header_friction_indices(const Header *h) {
   for (uint32_t i = 0; i < header_guides(h->u); i++)
     sb_printf(h->out, "  %s = %u, /* %s */\n", h->surfaces[switches + i], n++,
               comment_text(h->a, h->u->constraints.of.at[guide_at(h, i)->constraint].name));
-  sb_printf(h->out, "  %s_NSURFACES = %u\n};\n", h->upper, n);
+  header_printf(h, "  LAG_NSURFACES = %u\n};\n", n);
 }
 
 void header_friction_members(const Header *h) {
   const char *surfaces = program_set_contacts(h->u) ? "holds" : "touch";
   const char *member = arena_printf(h->a, "  LAG_REAL %s[LAG_NSURFACES]; /* in the last _moreau_step: LAG_SLIPS, "
                                           "LAG_STICKS; LAG_OPEN before the first */\n", surfaces);
-  csupport_expand(member, h->upper, h->lower, h->out);
-  csupport_expand("  LAG_REAL mode[LAG_NSURFACES];  /* mean of the sign of the quantity in that step: friction in "
-                  "parts of its size */\n",
-                  h->upper, h->lower, h->out);
-  if (header_guides(h->u))
-    csupport_expand("  LAG_REAL rubs; /* the largest friction of a guide so far */\n", h->upper, h->lower, h->out);
+  header_printf(h, "%s", member);
+  header_printf(h, "  LAG_REAL mode[LAG_NSURFACES];  /* mean of the sign of the quantity in that step: friction in "
+                   "parts of its size */\n");
+  if (header_guides(h->u)) header_printf(h, "  LAG_REAL rubs; /* the largest friction of a guide so far */\n");
 }
 
 /* A function of the state with modes behind the inputs, also where there are no inputs. */
 static void held_function(const Header *h, const Prog *p, const char *name, const char *params,
-                          const char *const *extra, const char *const *out) {
-  if (!h->u->u.n) params = arena_printf(h->a, "const %s_REAL *u, %s", h->upper, params);
-  header_internal_function(h, p, name, params, h->u->u.n ? extra + 1 : extra, out);
+                          const char *const *out) {
+  if (!h->u->u.n) params = arena_printf(h->a, "const LAG_REAL *u, %s", params);
+  header_internal_function(h, p, name, NULL, params, out);
 }
 
 /* Lines for models without coordinates, with surfaces of switches, with and without guides, with guides alone,
@@ -96,32 +94,19 @@ static const char *both_status(int switches, int guides) {
 
 /* Functions around the programs that know modes. */
 static void define_held(const Header *h) {
-  static const char *const all[] = {"u", "all", NULL}, *const both[] = {"u", "a", "zd", NULL},
-                           *const a[] = {"u", "a", NULL}, *const zd[] = {"u", "zd", NULL},
-                           *const outputs[] = {"u", "out", NULL};
-  const ProgramSet *u = h->u;
-  const char *R = h->upper;
-  const char *to = u->q.n && u->z.n ? "%s_REAL *a, %s_REAL *zd" : u->q.n ? "%s_REAL *a" : "%s_REAL *zd";
-  held_function(h, u->held_accel, "held_accel", arena_printf(h->a, to, R, R),
-                u->q.n && u->z.n ? both
-                : u->q.n         ? a
-                                 : zd,
-                both + 1);
-  held_function(h, u->switch_values, "switch_values", arena_printf(h->a, "%s_REAL *all", R), all, all + 1);
-  if (u->switch_grips)
-    held_function(h, u->switch_grips, "switch_grips", arena_printf(h->a, "%s_REAL *all", R), all, all + 1);
+  static const char *const rates_out[] = {"a", "zd"};
+  held_function(h, h->u->held_accel, "held_accel", header_rates(h), rates_out);
+  held_function(h, h->u->switch_values, "switch_values", "LAG_REAL *all", NULL);
+  if (h->u->switch_grips) held_function(h, h->u->switch_grips, "switch_grips", "LAG_REAL *all", NULL);
   if (h->parts.follows && h->scene->observe_held)
-    held_function(h, h->scene->observe_held, "held_observe", arena_printf(h->a, "%s_REAL *out", R), outputs,
-                  outputs + 1);
+    held_function(h, h->scene->observe_held, "held_observe", "LAG_REAL *out", NULL);
 }
 
 /* Rates and slips; of models with guides rates with their friction. */
 static void define_rates(const Header *h, const HeaderWord *words) {
-  static const char *const law[] = {"law", NULL};
   int some = header_guides(h->u) > 0, meets = program_set_contacts(h->u) > 0;
   if (some) {
-    header_internal_function(h, h->u->contact_laws, "contact_laws", arena_printf(h->a, "%s_REAL *law", h->upper), law,
-                             law);
+    header_internal_function(h, h->u->contact_laws, "contact_laws", NULL, "LAG_REAL *law", NULL);
     if (!meets) header_section(h, "friction");
     write_part(h, slips, words);
     write_part(h, pressing, words);

@@ -14,7 +14,7 @@ typedef struct {
   const char *file;            /* name of the file without .h */
   const char *upper, *lower;   /* prefix of all names, in upper and lower case */
   const char *const *event_ids; /* cnames_of_events */
-  CNames taken;                /* macros and enumerators of the header */
+  CNames taken;                /* global names of the header */
   const char **q, **z, **p, **in, **ev, **outputs, **contacts, **surfaces; /* enumerators by index */
   const char *const *fields;   /* members of the struct of parameters */
   const char *const *globals;
@@ -90,8 +90,12 @@ typedef struct {
   const char *mark, *text;
 } HeaderWord;
 
-/* Appends a section of the runtime's kernels. */
+/* Appends text, in which LAG_ and lag_ become the prefix. */
+void header_printf(const Header *h, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+
+/* Appends a section of the runtime's kernels, or several: "friction, mean". */
 void header_section(const Header *h, const char *name);
+void header_sections(const Header *h, const char *names);
 
 /* Appends a template: its lines begin with a mark, q, z or u for models with coordinates, states or inputs, n for
  * those without inputs, and `|`. HELD, PASS: parameters and arguments for inputs, CALL: arguments of _accel, ARGS:
@@ -124,15 +128,19 @@ const char *header_libraries(const Header *h);
 
 /* Names in the C of a function around a program with these further parameters and output arrays. */
 CStyle header_style(const Header *h, const char *const *own, const char *const *out);
-/* A function of the state around p; own: its further parameters; out: its output arrays. */
-void header_state_function(const Header *h, const Prog *p, const char *comment, const char *head,
-                           const char *const *own, const char *const *out, int returns);
-/* `static int lower_NAME(state, params)` around p; extra, out: as own and out above. */
-void header_internal_function(const Header *h, const Prog *p, const char *name, const char *params,
-                              const char *const *extra, const char *const *out);
+/* A function of the state around p. params: its further parameters, as text; out: its output arrays by number; NULL:
+ * those parameters that are not const. */
+void header_state_function(const Header *h, const Prog *p, const char *comment, const char *head, const char *params,
+                           const char *const *out, int returns);
+/* `static int lag_NAME(state, params)` around p; function f of the interface, if the model has it. */
+void header_internal_function(const Header *h, const Prog *p, const char *name, const char *comment, const char *params,
+                              const char *const *out);
+void header_api_function(const Header *h, const Prog *p, HeaderFn f);
 /* A double as a constant of the scalar's type, with a point, so that it takes suffixes. */
 const char *header_constant(const Header *h, double x);
 const char *header_api(const Header *h, HeaderFn f);
+/* The accelerations and rates that a model has, as parameters. */
+const char *header_rates(const Header *h);
 
 /* Index of the method with this name of n letters, or -1; programs WANT_... that it needs; NULL, or what a model
  * needs that it steps. */
@@ -142,8 +150,8 @@ const char *header_method_refusal(const ProgramSet *u, int method);
 unsigned header_methods(const ProgramSet *u); /* bits of those that step the model */
 int header_has_method(const Header *h, const char *name);
 
-/* Prototype broken into lines at its commas. */
-const char *header_wrapped(const Header *h, const char *prototype);
+/* Prototype with the prefix, broken into lines at its commas. */
+const char *header_wrapped(const Header *h, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 /* Declares a function that has no lanes, so that a call of it over lanes does not compile, and says the way out. */
 void header_one_state(const Header *h, const char *name, const char *way);
 

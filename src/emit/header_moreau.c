@@ -14,16 +14,16 @@ static void contact_indices(const Header *h) {
                   "of slipping along its surface. */\nenum {\n");
   for (uint32_t i = 0; i < n; i++)
     sb_printf(h->out, "  %s = %u, /* %s */\n", h->contacts[i], i, comment_text(h->a, header_contact_name(h, i)));
-  sb_printf(h->out, "  %s_NCONTACTS = %u\n};\n", h->upper, n);
+  header_printf(h, "  LAG_NCONTACTS = %u\n};\n", n);
 }
 
 static void contact_members(const Header *h) {
-  csupport_expand(
+  header_printf(
+      h,
       "  LAG_REAL touch[LAG_NCONTACTS];   /* in the last _moreau_step: LAG_OPEN, LAG_SLIPS, LAG_STICKS */\n"
       "  LAG_REAL struck[LAG_NCONTACTS];  /* velocity with which a gap closed, of an impact in that step; else 0 */\n"
       "  LAG_REAL impulse[LAG_NCONTACTS]; /* of a gap, and of friction along its velocity of slipping; the next step "
-      "begins with them */\n",
-      h->upper, h->lower, h->out);
+      "begins with them */\n");
 }
 
 /* --- definitions --- */
@@ -74,27 +74,18 @@ static void write_contacts(const Header *h, const char *text) {
 
 static void define_contacts(const Header *h) {
   const ProgramSet *u = h->u;
-  static const char *const matrices[] = {"A", "M", NULL}, *const law[] = {"law", NULL},
-                           *const load[] = {"g", "d", "force", "load", NULL};
-  header_section(h, "friction");
-  header_section(h, "mean");
-  header_section(h, "band_matrix");
-  header_section(h, "impulses");
-  header_internal_function(h, u->constraints.matrices, "contact_matrices",
-                           arena_printf(h->a, "%s_REAL *A, %s_REAL *M", h->upper, h->upper), matrices, matrices);
+  header_sections(h, "friction, mean, band_matrix, impulses");
+  header_internal_function(h, u->constraints.matrices, "contact_matrices", NULL, "LAG_REAL *A, LAG_REAL *M", NULL);
   if (u->contact_coefficients)
-    header_internal_function(h, u->contact_coefficients, "contact_coefficients",
-                             arena_printf(h->a, "%s_REAL *law", h->upper), law, law);
+    header_internal_function(h, u->contact_coefficients, "contact_coefficients", NULL, "LAG_REAL *law", NULL);
   if (u->guide_loads)
-    header_internal_function(h, u->guide_loads, "guide_loads",
-                             arena_printf(h->a, "const %s_REAL *g, %s_REAL *d, %s_REAL *force, %s_REAL *load",
-                                          h->upper, h->upper, h->upper, h->upper),
-                             load, load + 1);
+    header_internal_function(h, u->guide_loads, "guide_loads", NULL,
+                             "const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *load", NULL);
   write_contacts(h, tables);
   header_section(h, "contacts");
   write_contacts(h, note);
   if (header_rubs(u)) {
-    csupport_expand("\n#undef LAG_MODEL\n#undef LAG_THE_MODEL\n", h->upper, h->lower, h->out);
+    header_printf(h, "\n#undef LAG_MODEL\n#undef LAG_THE_MODEL\n");
     header_friction_define(h);
     write_contacts(h, coupling);
     header_section(h, "coupled");
@@ -118,9 +109,8 @@ const char *header_moreau_lacks(const ProgramSet *u) {
 void header_moreau_indices(const Header *h) {
   if (program_set_contacts(h->u)) contact_indices(h);
   if (header_rubs(h->u)) header_friction_indices(h);
-  csupport_expand("\n/* A contact, or a surface of friction, in the last step by Moreau's method: nothing presses; it "
-                  "slips, or has no friction; friction holds it. */\nenum { LAG_OPEN, LAG_SLIPS, LAG_STICKS };\n",
-                  h->upper, h->lower, h->out);
+  header_printf(h, "\n/* A contact, or a surface of friction, in the last step by Moreau's method: nothing presses; it "
+                   "slips, or has no friction; friction holds it. */\nenum { LAG_OPEN, LAG_SLIPS, LAG_STICKS };\n");
 }
 
 void header_moreau_members(const Header *h) {
@@ -133,11 +123,10 @@ void header_moreau_start(const Header *h) {
   const char *holds = meets ? "holds" : "touch", *start = arena_printf(h->a,
       "  for (int i = 0; i < LAG_NSURFACES; i++) s->%s[i] = s->mode[i] = LAG_C(0.0);\n", holds);
   if (meets)
-    csupport_expand(
-        "  for (int i = 0; i < LAG_NCONTACTS; i++) s->touch[i] = s->struck[i] = s->impulse[i] = LAG_C(0.0);\n",
-        h->upper, h->lower, h->out);
-  if (header_rubs(h->u)) csupport_expand(start, h->upper, h->lower, h->out);
-  if (header_guides(h->u)) csupport_expand("  s->rubs = LAG_C(0.0);\n", h->upper, h->lower, h->out);
+    header_printf(
+        h, "  for (int i = 0; i < LAG_NCONTACTS; i++) s->touch[i] = s->struck[i] = s->impulse[i] = LAG_C(0.0);\n");
+  if (header_rubs(h->u)) header_printf(h, "%s", start);
+  if (header_guides(h->u)) header_printf(h, "  s->rubs = LAG_C(0.0);\n");
 }
 
 static const char *const of_inputs = "\n * u: the inputs, constant during the step; 0 for the model's formulas.",

@@ -4,12 +4,9 @@
 
 /* Derivatives of outputs and formulas, with their positions. */
 static void output_partials(const Header *h) {
-  static const char *const d[] = {"d", NULL};
-  const char *head = arena_printf(h->a, "static int %s_partials_outputs(%s, %s_REAL *d)", h->lower,
-                                  header_state_args(h, 1, ""), h->upper);
-  sb_printf(h->out, "\nstatic const unsigned short %s_by_outputs_at[][2] = {%s};\n", h->lower,
-            header_positions(h, LIST(h->u->outputs_at)));
-  header_state_function(h, h->u->outputs, NULL, header_wrapped(h, head), d, d, 1);
+  header_printf(h, "\nstatic const unsigned short lag_by_outputs_at[][2] = {%s};\n",
+                header_positions(h, LIST(h->u->outputs_at)));
+  header_internal_function(h, h->u->outputs, "partials_outputs", NULL, "LAG_REAL *d", NULL);
 }
 
 /* Lines marked a: outputs contain accelerations or rates of states; i: and there are inputs. */
@@ -30,19 +27,13 @@ static void output_jacobian(const Header *h) {
 
 /* The classical method: y1 = y0 + h/6 (k1 + 2 k2 + 2 k3 + k4); backwards X_s = (df/dy)^T h (b_s x + a X_(s+1)). */
 static void adjoint_step(const Header *h) {
-  static const char *const own[] = {"a", "g", "by_y", "by_up", "d", NULL}, *const out[] = {"by_y", "by_up", "d"};
   const ProgramSet *u = h->u;
-  const char *R = h->upper;
   uint32_t n = u->formulas_at.n;
-  header_internal_function(h, u->adjoint, "reverse",
-                           arena_printf(h->a,
-                                        "const %s_REAL *a, const %s_REAL *g, %s_REAL *by_y, %s_REAL *by_up, "
-                                        "%s_REAL *d",
-                                        R, R, R, R, R),
-                           own, out);
+  header_internal_function(h, u->adjoint, "reverse", NULL,
+                           "const LAG_REAL *a, const LAG_REAL *g, LAG_REAL *by_y, LAG_REAL *by_up, LAG_REAL *d", NULL);
   if (n)
-    sb_printf(h->out, "\nstatic const unsigned short %s_formulas_at[][2] = {%s};\n", h->lower,
-              header_positions(h, LIST(u->formulas_at)));
+    header_printf(h, "\nstatic const unsigned short lag_formulas_at[][2] = {%s};\n",
+                  header_positions(h, LIST(u->formulas_at)));
   StrBuf at = strbuf(h->a);
   sb_printf(&at, "t%s", u->q.n ? ", y[r], y[r] + LAG_NQ" : "");
   if (u->z.n) sb_printf(&at, ", y[r] + %u", 2 * u->q.n);

@@ -30,15 +30,6 @@ enum { LAG_RUNGE_KUTTA_METHODS(RUNGE_KUTTA_ID) NMETHODS = sizeof methods / sizeo
 
 static int adapts(const HeaderMethod *m) { return m->kind == ADAPTIVE || m->kind == LATE; }
 
-static void line(const Header *h, const char *text) { csupport_expand(text, h->upper, h->lower, h->out); }
-
-/* A prototype, broken where it is long with the header's prefix. */
-static void write_prototype(const Header *h, const char *text) {
-  StrBuf b = strbuf(h->a);
-  csupport_expand(text, h->upper, h->lower, &b);
-  sb_puts(h->out, header_wrapped(h, sb_text(&b)));
-}
-
 /* --- explicit Runge-Kutta methods --- */
 
 static void write_trial(const Header *h, const HeaderMethod *m) {
@@ -127,61 +118,61 @@ static int has_status(const Header *h) { return some_adaptive(h) || has_single(h
 
 static void declare_both(const Header *h, const HeaderMethod *m) {
   for (int with = 0; with < (h->u->u.n ? 2 : 1); with++) {
-    if (with) line(h, "/* The same with inputs that change during the step. */\n");
-    write_prototype(h, arena_printf(h->a, "LAG_API %s;", prototype(h, m, with)));
-    line(h, "\n");
+    if (with) header_printf(h, "/* The same with inputs that change during the step. */\n");
+    sb_puts(h->out, header_wrapped(h, "LAG_API %s;", prototype(h, m, with)));
+    header_printf(h, "\n");
   }
 }
 
 static void declare_single(const Header *h) {
-  line(h, guard);
+  header_printf(h, "%s", guard);
   if (header_has_method(h, "variational")) header_variational_declare(h);
   if (header_has_method(h, "moreau")) header_moreau_declare(h);
-  line(h, "#elif defined(LAG_LANES)\n");
+  header_printf(h, "#elif defined(LAG_LANES)\n");
   if (header_has_method(h, "variational")) {
-    line(h, "typedef struct lag_variational { int order; } lag_variational;\n");
+    header_printf(h, "typedef struct lag_variational { int order; } lag_variational;\n");
     header_one_state(h, "variational_begin", "make steps by another method, or variational ones");
     header_one_state(h, "variational_step", "make steps by another method, or variational ones");
   }
   if (header_has_method(h, "moreau")) header_one_state(h, "moreau_step", "make such steps");
-  line(h, "#endif\n");
+  header_printf(h, "#endif\n");
 }
 
 void header_steps_declare(const Header *h) {
   if (has_status(h))
-    line(h, "\n/* Status codes of steps: no step is short enough, Newton's method does not converge, a tolerance is "
-            "not positive. */\nenum { LAG_ESTEP = -2, LAG_ENEWTON = -3, LAG_ETOLERANCE = -8 };\n");
+    header_printf(
+        h, "\n/* Status codes of steps: no step is short enough, Newton's method does not converge, a tolerance is "
+           "not positive. */\nenum { LAG_ESTEP = -2, LAG_ENEWTON = -3, LAG_ETOLERANCE = -8 };\n");
   if (some_adaptive(h)) {
-    line(h, ordered);
+    header_printf(h, "%s", ordered);
     header_adaptive_declare(h);
   }
   for (int i = 0; i < NMETHODS; i++) {
     const HeaderMethod *m = &methods[i];
     if (!is_wanted(h, i) || !adapts(m)) continue;
-    line(h, arena_printf(h->a, "\n/* One step by %s, towards the time `until` and not beyond it.%s%s */\n", m->words,
-                         h->u->u.n ? header_held_inputs : "", header_adaptive_lanes));
+    header_printf(h, "\n/* One step by %s, towards the time `until` and not beyond it.%s%s */\n", m->words,
+                  h->u->u.n ? header_held_inputs : "", header_adaptive_lanes);
     declare_both(h, m);
   }
-  if (some_adaptive(h)) line(h, "#endif\n");
+  if (some_adaptive(h)) header_printf(h, "#endif\n");
   if (header_has_method(h, "taylor")) {
-    line(h, ordered);
+    header_printf(h, "%s", ordered);
     header_taylor_declare(h);
-    line(h, "#endif\n");
+    header_printf(h, "#endif\n");
   }
   if (has_single(h)) declare_single(h);
   for (int i = 0; i < NMETHODS; i++) {
     if (i == ID_rk4 || !is_wanted(h, i) || methods[i].kind != FIXED) continue;
-    line(h, arena_printf(h->a, "\n/* A step h by %s.%s */\n", methods[i].words, h->u->u.n ? header_held_inputs : ""));
+    header_printf(h, "\n/* A step h by %s.%s */\n", methods[i].words, h->u->u.n ? header_held_inputs : "");
     declare_both(h, &methods[i]);
   }
   for (int i = 0; i < NMETHODS; i++) {
     const HeaderMethod *m = &methods[i];
     if (!is_wanted(h, i) || m->kind != SPLITTING) continue;
-    line(h, arena_printf(h->a,
-                         "\n/* A step h by %s. a[LAG_NQ]: the accelerations at *s, by _accel before the first step; "
-                         "the\n * step leaves those at its end.%s */\n",
-                         m->words,
-                         h->u->u.n ? " u: the inputs, constant during the step; 0 for the model's formulas." : ""));
+    header_printf(h,
+                  "\n/* A step h by %s. a[LAG_NQ]: the accelerations at *s, by _accel before the first step; "
+                  "the\n * step leaves those at its end.%s */\n",
+                  m->words, h->u->u.n ? " u: the inputs, constant during the step; 0 for the model's formulas." : "");
     declare_both(h, m);
   }
 }
@@ -192,24 +183,21 @@ static void define_both(const Header *h, const HeaderMethod *m) {
   const char *call = splits ? arena_printf(h->a, "lag_splitting_step(&lag_compose_%s, p, s, h, a", m->name)
                             : arena_printf(h->a, "lag_%s(p, s, w, until", m->name);
   for (int with = 0; (h->u->u.n || splits) && with < (h->u->u.n ? 2 : 1); with++) {
-    if (!splits || with) line(h, "\n");
-    write_prototype(h, arena_printf(h->a, "LAG_API %s", prototype(h, m, with)));
-    line(h, arena_printf(h->a, " {\n  return %s%s);\n}\n", call,
-                         !h->u->u.n ? ""
-                         : with     ? ", 0, input, context"
-                                    : ", u, 0, 0"));
+    if (!splits || with) header_printf(h, "\n");
+    sb_puts(h->out, header_wrapped(h, "LAG_API %s", prototype(h, m, with)));
+    header_printf(h, " {\n  return %s%s);\n}\n", call, !h->u->u.n ? "" : with ? ", 0, input, context" : ", u, 0, 0");
   }
 }
 
 static void define_method(const Header *h, const HeaderMethod *m) {
   const HeaderWord words[] = {{"METHOD", m->name}, {"TABLE", m->table}, {NULL, NULL}};
-  line(h, "\n");
-  write_prototype(
-      h, h->u->u.n
-             ? arena_printf(h->a,
-                            "static int lag_%s(const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL until%s)",
-                            m->name, header_held_parameters)
-             : arena_printf(h->a, "LAG_API %s", prototype(h, m, 0)));
+  header_printf(h, "\n");
+  sb_puts(h->out, h->u->u.n
+                      ? header_wrapped(h,
+                                       "static int lag_%s(const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL "
+                                       "until%s)",
+                                       m->name, header_held_parameters)
+                      : header_wrapped(h, "LAG_API %s", prototype(h, m, 0)));
   header_template(h, adaptive_step, words);
   define_both(h, m);
 }
@@ -231,8 +219,7 @@ static void define_splitting(const Header *h) {
 
 /* Steps of dop853 that keep their stages k[16]; the rest of dense output: stages 12 to 15, the highest terms. */
 static void define_dense_steps(const Header *h) {
-  header_section(h, "dop853_dense");
-  header_section(h, "dense");
+  header_sections(h, "dop853_dense, dense");
   header_template(h, dense_steps, NULL);
 }
 
@@ -241,19 +228,18 @@ static void define_fixed(const Header *h, const HeaderMethod *m) {
   const HeaderWord words[] = {{"METHOD", m->name}, {"TABLE", m->table}, {NULL, NULL}};
   const char *inner = m == &methods[ID_rk4] ? "step" : m->name;
   write_trial(h, m);
-  line(h, "\n");
-  if (!h->u->u.n) write_prototype(h, arena_printf(h->a, "LAG_API %s", prototype(h, m, 0)));
+  header_printf(h, "\n");
+  if (!h->u->u.n) sb_puts(h->out, header_wrapped(h, "LAG_API %s", prototype(h, m, 0)));
   else
-    line(h, arena_printf(h->a,
-                         "static int lag_%s(const lag_params *p, lag_state *s, LAG_REAL h, const LAG_REAL *u,\n   "
-                         "lag_input_fn *input, void *context)",
-                         inner));
+    header_printf(h,
+                  "static int lag_%s(const lag_params *p, lag_state *s, LAG_REAL h, const LAG_REAL *u,\n   "
+                  "lag_input_fn *input, void *context)",
+                  inner);
   header_template(h, fixed_step, words);
   for (int with = 0; h->u->u.n && with < 2; with++) {
-    line(h, "\n");
-    write_prototype(h, arena_printf(h->a, "LAG_API %s", prototype(h, m, with)));
-    line(h, arena_printf(h->a, " {\n  return lag_%s(p, s, h, %s);\n}\n", inner,
-                         with ? "0, input, context" : "u, 0, 0"));
+    header_printf(h, "\n");
+    sb_puts(h->out, header_wrapped(h, "LAG_API %s", prototype(h, m, with)));
+    header_printf(h, " {\n  return lag_%s(p, s, h, %s);\n}\n", inner, with ? "0, input, context" : "u, 0, 0");
   }
 }
 
@@ -265,10 +251,9 @@ static const char *longest(const Header *h) {
 
 /* Methods that need an order of numbers. */
 static void define_adaptive(const Header *h) {
-  line(h, ordered);
+  header_printf(h, "%s", ordered);
   math_power(h->upper, h->lower, h->out);
-  header_section(h, "errors");
-  header_section(h, "step_size");
+  header_sections(h, "errors, step_size");
   header_adaptive_define(h, longest(h));
   for (int i = 0; i < NMETHODS; i++) {
     const HeaderMethod *m = &methods[i];
@@ -277,22 +262,22 @@ static void define_adaptive(const Header *h) {
     define_method(h, m);
     if (h->parts.parts & PART_PATH && !header_has_method(h, "moreau")) define_dense_steps(h);
   }
-  line(h, "#endif\n");
+  header_printf(h, "#endif\n");
 }
 
 static void define_taylor(const Header *h) {
-  line(h, ordered);
+  header_printf(h, "%s", ordered);
   if (!some_adaptive(h)) math_power(h->upper, h->lower, h->out);
   header_taylor_define(h, longest(h));
-  line(h, "#endif\n");
+  header_printf(h, "#endif\n");
 }
 
 /* Methods that need one state, too: not over lanes. */
 static void define_single(const Header *h) {
-  line(h, guard);
+  header_printf(h, "%s", guard);
   if (header_has_method(h, "variational")) header_variational_define(h);
   if (header_has_method(h, "moreau")) header_moreau_define(h);
-  line(h, "#endif\n");
+  header_printf(h, "#endif\n");
 }
 
 void header_steps_define(const Header *h) {
@@ -300,9 +285,9 @@ void header_steps_define(const Header *h) {
   header_section(h, "sum");
   int holds = header_has(h, FN_HOLD), events = (h->parts.parts & (PART_EVENTS | PART_PATH)) != 0;
   if (holds || events || header_has_method(h, "taylor") || has_single(h)) {
-    if (!holds) line(h, ordered);
+    if (!holds) header_printf(h, "%s", ordered);
     header_template(h, epsilon, NULL);
-    if (!holds) line(h, "#endif\n");
+    if (!holds) header_printf(h, "#endif\n");
   }
   if (holds) header_hold_define(h);
   header_move(h);

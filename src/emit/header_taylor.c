@@ -16,9 +16,8 @@ static CStyle base(const Header *h) {
 }
 
 static const char *prototype(const Header *h) {
-  const char *m = h->lower, *R = h->upper;
-  return arena_printf(h->a, "int %s_taylor_step(const %s_params *p, %s_state *s, %s_taylor *w, %s_REAL until%s)", m, m,
-                      m, m, R, h->u->u.n ? arena_printf(h->a, ", const %s_REAL *u", R) : "");
+  return arena_printf(h->a, "int lag_taylor_step(const lag_params *p, lag_state *s, lag_taylor *w, LAG_REAL until%s)",
+                      h->u->u.n ? ", const LAG_REAL *u" : "");
 }
 
 /* Numbers in the struct at order 40. */
@@ -34,13 +33,13 @@ void header_taylor_declare(const Header *h) {
       {"NUMBERS", arena_printf(h->a, "%u", numbers(s, 2 * h->u->q.n + h->u->z.n))},
       {"MORE", arena_printf(h->a, "%s%s", h->u->u.n ? header_held_inputs : "", header_adaptive_lanes)},
       {NULL, NULL}};
-  csupport_expand(
-      "\n/* The highest order of Taylor series. */\n#ifndef LAG_TAYLOR_ORDER\n#define LAG_TAYLOR_ORDER 40\n#endif\n",
-      h->upper, h->lower, h->out);
+  header_printf(
+      h,
+      "\n/* The highest order of Taylor series. */\n#ifndef LAG_TAYLOR_ORDER\n#define LAG_TAYLOR_ORDER 40\n#endif\n");
   emit_taylor_types(s, &st, h->lower, h->out);
   sb_putc(h->out, '\n');
   header_template(h, memory, words);
-  sb_printf(h->out, "%s\n", header_wrapped(h, arena_printf(h->a, "%s_API %s;", h->upper, prototype(h))));
+  sb_printf(h->out, "%s\n", header_wrapped(h, "LAG_API %s;", prototype(h)));
 }
 
 void header_taylor_overloads(const Header *h) { sb_puts(h->out, overloads); }
@@ -56,17 +55,15 @@ void header_taylor_define(const Header *h, const char *longest) {
                               {"INPUTS", inputs ? "u ? u : now, follows" : "0, 0"}, {"GIVEN", inputs ? ", u" : ""},
                               {"USES", inputs ? "(void)p, (void)u, " : "(void)p, "},
                               {NULL, NULL}};
-  csupport_expand(
-      "\n/* Taylor coefficients along the motion: of a value x(t), x^(k)(t) T^k/k! for orders k = 0, 1, ... */",
-      h->upper, h->lower, h->out);
+  header_printf(
+      h, "\n/* Taylor coefficients along the motion: of a value x(t), x^(k)(t) T^k/k! for orders k = 0, 1, ... */");
   emit_taylor_functions(h->u->taylor, &st, h->lower, h->out);
   header_template(h, vectors, words);
-  header_section(h, "taylor_order");
-  header_section(h, "taylor_size");
+  header_sections(h, "taylor_order, taylor_size");
   header_template(h, begin, words);
   header_template(h, parts, words);
   header_section(h, "taylor_step");
   header_template(h, attempt, words);
-  sb_printf(h->out, "%s", header_wrapped(h, arena_printf(h->a, "%s_API %s", h->upper, prototype(h))));
+  sb_puts(h->out, header_wrapped(h, "LAG_API %s", prototype(h)));
   header_template(h, step, words);
 }

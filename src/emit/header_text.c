@@ -6,11 +6,15 @@
 
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g"};
 
-const char *header_wrapped(const Header *h, const char *prototype) {
+const char *header_wrapped(const Header *h, const char *fmt, ...) {
   enum { WIDTH = 110 };
-  StrBuf b = strbuf(h->a);
+  StrBuf b = strbuf(h->a), prototype = strbuf(h->a);
   size_t column = 0;
-  for (const char *s = prototype; *s;) {
+  va_list ap;
+  va_start(ap, fmt);
+  csupport_expand(arena_vprintf(h->a, fmt, ap), h->upper, h->lower, &prototype);
+  va_end(ap);
+  for (const char *s = sb_text(&prototype); *s;) {
     size_t n = strcspn(s, ","), whole = n + (s[n] == ',');
     if (column && column + whole > WIDTH) {
       sb_puts(&b, "\n   ");
@@ -21,6 +25,13 @@ const char *header_wrapped(const Header *h, const char *prototype) {
     s += whole;
   }
   return sb_text(&b);
+}
+
+void header_printf(const Header *h, const char *fmt, ...) {
+  va_list ap;
+  va_start(ap, fmt);
+  csupport_expand(arena_vprintf(h->a, fmt, ap), h->upper, h->lower, h->out);
+  va_end(ap);
 }
 
 const char *header_state_args(const Header *h, int typed, const char *from) {
@@ -64,12 +75,10 @@ int header_has(const Header *h, HeaderFn f) {
 }
 
 void header_one_state(const Header *h, const char *name, const char *way) {
-  csupport_expand(
-      arena_printf(h->a,
-                   "int lag_%s(const void *p, ...) __attribute__((error(\"it computes one state, not LAG_LANES: %s\"\n"
-                   "  \" by a second header without LAG_LANES, with another --prefix\")));\n",
-                   name, way),
-      h->upper, h->lower, h->out);
+  header_printf(h,
+                "int lag_%s(const void *p, ...) __attribute__((error(\"it computes one state, not LAG_LANES: %s\"\n"
+                "  \" by a second header without LAG_LANES, with another --prefix\")));\n",
+                name, way);
 }
 
 /* ---- functions around programs */
@@ -96,18 +105,31 @@ CStyle header_style(const Header *h, const char *const *own, const char *const *
                   .math = math_prefix(h->u, h->lower)};
 }
 
-void header_state_function(const Header *h, const Prog *p, const char *comment, const char *head,
-                           const char *const *own, const char *const *out, int returns) {
-  CStyle st = header_style(h, own_names(h, own), out);
+/* Names in a list of parameters, "const LAG_REAL *g, LAG_REAL *d"; outputs: of arrays that are written. */
+static const char *const *parameter_names(const Header *h, const char *list, int outputs) {
+  const char **names = ARENA_ARRAY(h->a, const char *, strlen(list));
+  uint32_t n = 0;
+  for (const char *s = list, *end; *s && *s != ')'; s = end + (*end == ',')) {
+    s += strspn(s, " ");
+    end = s + strcspn(s, ",)");
+    const char *star = memchr(s, '*', (size_t)(end - s));
+    if (star && !(outputs && strncmp(s, "const ", 6) == 0))
+      names[n++] = arena_strndup(h->a, star + 1, (size_t)(end - star) - 1);
+  }
+  return names;
+}
+
+void header_state_function(const Header *h, const Prog *p, const char *comment, const char *head, const char *params,
+                           const char *const *out, int returns) {
+  CStyle st = header_style(h, own_names(h, parameter_names(h, params, 0)), out ? out : parameter_names(h, params, 1));
   CFunction c = {.comment = comment, .head = head, .returns = returns, .own_work = 1};
   cfunction(p, &st, &c, h->out);
 }
 
-void header_internal_function(const Header *h, const Prog *p, const char *name, const char *params,
-                              const char *const *extra, const char *const *out) {
-  const char *head =
-      arena_printf(h->a, "static int %s_%s(%s, %s)", h->lower, name, header_state_args(h, 1, ""), params);
-  header_state_function(h, p, NULL, header_wrapped(h, head), extra, out, 1);
+void header_internal_function(const Header *h, const Prog *p, const char *name, const char *comment, const char *params,
+                              const char *const *out) {
+  const char *head = header_wrapped(h, "static int lag_%s(%s, %s)", name, header_state_args(h, 1, ""), params);
+  header_state_function(h, p, comment, head, params, out, 1);
 }
 
 HeaderWord header_number(const Header *h, const char *mark, uint32_t n) {
@@ -131,6 +153,13 @@ const char *header_positions(const Header *h, const IrEntry *at, uint32_t n) {
 /* ---- templates */
 
 void header_section(const Header *h, const char *name) { embedded_section(name, h->upper, h->lower, h->out); }
+
+void header_sections(const Header *h, const char *names) {
+  for (size_t n; *names; names += n + strspn(names + n, ", ")) {
+    n = strcspn(names, ",");
+    header_section(h, arena_strndup(h->a, names, n));
+  }
+}
 
 const char *const header_held_inputs = "\n * u: the inputs, constant during the step; 0 for the model's formulas.";
 const char *const header_adaptive_lanes = "\n * Over lanes: a try in each lane that is not at its `until`. One whose "
@@ -179,7 +208,7 @@ static const char *const prototypes[FN_COUNT] = {
     [FN_PARAM] = " |LAG_REAL *lag_param(lag_params *p, int index)",
     [FN_START] = " |int lag_start(const lag_params *p, lag_state *s)",
     [FN_INPUTS] = " |void lag_inputs(LAG_REAL t, const lag_params *p, LAG_REAL *u)",
-    [FN_ACCEL] = " |int lag_accel(STATERATES)",
+    [FN_ACCEL] = " |int lag_accel(STATE, RATES)",
     [FN_ENERGY] = " |void lag_energy(STATE, LAG_REAL *e)",
     [FN_CHARGES] = " |int lag_charges(STATE, LAG_REAL *out)",
     [FN_POWERS] = " |int lag_powers(STATE, LAG_REAL *out)",
@@ -208,21 +237,29 @@ static const char *const prototypes[FN_COUNT] = {
                         "LAG_REAL *g)",
 };
 
+const char *header_rates(const Header *h) {
+  return !h->u->z.n ? "LAG_REAL *a" : h->u->q.n ? "LAG_REAL *a, LAG_REAL *zd" : "LAG_REAL *zd";
+}
+
 const char *header_prototype(const Header *h, HeaderFn f) {
-  const char *q = h->u->q.n ? ", LAG_REAL *a" : "", *z = h->u->z.n ? ", LAG_REAL *zd" : "";
   const HeaderWord words[] = {{"STATE", header_state_args(h, 1, "")},
                               {"INPUT", h->u->u.n ? ", const LAG_REAL *u" : ""},
                               {"BY_INPUTS", h->u->u.n ? ", LAG_REAL *B" : ""},
                               {"ALSO_BY_INPUTS", h->u->u.n ? ", LAG_REAL *D" : ""},
-                              {"RATES", arena_printf(h->a, "%s%s", q, z)},
+                              {"RATES", header_rates(h)},
                               {NULL, NULL}};
   StrBuf b = strbuf(h->a);
   expand_template(h, prototypes[f], words, &b);
   return sb_text(&b);
 }
 
-const char *header_api(const Header *h, HeaderFn f) {
-  return header_wrapped(h, arena_printf(h->a, "%s_API %s", h->upper, header_prototype(h, f)));
+const char *header_api(const Header *h, HeaderFn f) { return header_wrapped(h, "LAG_API %s", header_prototype(h, f)); }
+
+void header_api_function(const Header *h, const Prog *p, HeaderFn f) {
+  static const char state[] = "(STATE, ";
+  int returns = strncmp(prototypes[f], " |int", 5) == 0;
+  const char *params = strstr(prototypes[f], state) + sizeof state - 1;
+  if (header_has(h, f)) header_state_function(h, p, NULL, header_api(h, f), params, NULL, returns);
 }
 
 const char *header_chosen(const Header *h, const char *text, const LineChoice *choices) {

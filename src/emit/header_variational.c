@@ -7,8 +7,7 @@
 /* One more than the half-bandwidth of the second derivatives, in the order in which coordinates are declared. */
 static uint32_t band(const ProgramSet *u) {
   uint32_t most = 0;
-  for (uint32_t k = 0; k < u->second_at.n; k++) {
-    const IrSecond *s = &u->second_at.at[k];
+  vec_each(const IrSecond, s, u->second_at) {
     uint32_t d = s->row > s->col ? s->row - s->col : s->col - s->row;
     most = d > most ? d : most;
   }
@@ -49,21 +48,12 @@ void header_variational_declare(const Header *h) {
 }
 
 void header_variational_define(const Header *h) {
-  static const char *const first[] = {"Lq", "Lv", "Q", NULL}, *const second[] = {"h", NULL};
-  const ProgramSet *u = h->u;
-  const char *R = h->upper, *state = header_state_args(h, 1, "");
-  const char *head =
-      arena_printf(h->a, "static int %s_variation(%s, %s_REAL *Lq, %s_REAL *Lv, %s_REAL *Q)", h->lower, state, R, R, R);
-  header_state_function(h, u->variation, "dL/dq, the momenta dL/dq', and the generalised forces outside of L.",
-                        header_wrapped(h, head), first, first, 1);
-  head = arena_printf(h->a, "static int %s_second_derivatives(%s, %s_REAL *h)", h->lower, state, R);
-  header_state_function(h, u->second, "Their nonzero derivatives.", header_wrapped(h, head), second, second, 1);
-  header_section(h, "gauss points");
-  header_section(h, "rule: tables");
+  header_internal_function(h, h->u->variation, "variation",
+                           "dL/dq, the momenta dL/dq', and the generalised forces outside of L.",
+                           "LAG_REAL *Lq, LAG_REAL *Lv, LAG_REAL *Q", NULL);
+  header_internal_function(h, h->u->second, "second_derivatives", "Their nonzero derivatives.", "LAG_REAL *h", NULL);
+  header_sections(h, "gauss points, rule: tables");
   write(h, begin);
-  header_section(h, "predictor");
-  header_section(h, "band_matrix");
-  header_section(h, "newton");
-  header_section(h, "discrete");
+  header_sections(h, "predictor, band_matrix, newton, discrete");
   write(h, steps);
 }

@@ -33,10 +33,7 @@ static void second_table(const ProgramSet *u, StrBuf *out) {
   static const char *const parts[] = {"LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV"};
   if (!u->second_at.n) return;
   sb_puts(out, "\nstatic const lag_second second_table[] = {\n");
-  for (uint32_t i = 0; i < u->second_at.n; i++) {
-    const IrSecond *s = &u->second_at.at[i];
-    sb_printf(out, "  {%s, %u, %u},\n", parts[s->part], s->row, s->col);
-  }
+  vec_each(const IrSecond, s, u->second_at) sb_printf(out, "  {%s, %u, %u},\n", parts[s->part], s->row, s->col);
   sb_puts(out, "};\n");
 }
 

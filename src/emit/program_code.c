@@ -279,13 +279,7 @@ static void compute(Coder *w, Slot s) {
   case IR_OR: code_2(w, CODE_OR, i->a, i->b); break;
   case IR_SELECT: code_3(w, CODE_SELECT, i->a, i->b, i->c); break;
   case IR_TABLE: bring(w, i->a), code_1(w, CODE_TABLE, i->index); break;
-  case IR_CONST:
-  case IR_PI:
-  case IR_LOAD:
-  case IR_PIVOT:
-  case IR_SOLVE:
-  case IR_SOLVED:
-  case IR_NEST:
+  case IR_CONST: case IR_PI: case IR_LOAD: case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_NEST:
   case IR_TITLE: break;
   }
 }

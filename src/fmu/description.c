@@ -33,13 +33,12 @@ typedef struct {
 static void attribute(StrBuf *out, const char *name, const char *value) {
   if (!value || !*value) return;
   sb_printf(out, " %s=\"", name);
-  for (const char *c = value; *c; c++) {
+  for (const char *c = value; *c; c++)
     if (*c == '&') sb_puts(out, "&amp;");
     else if (*c == '<') sb_puts(out, "&lt;");
     else if (*c == '>') sb_puts(out, "&gt;");
     else if (*c == '"') sb_puts(out, "&quot;");
     else sb_putc(out, (unsigned char)*c < ' ' ? ' ' : *c);
-  }
   sb_putc(out, '"');
 }
 

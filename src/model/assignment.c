@@ -15,16 +15,14 @@ Target read_target(const Builder *b, AstId id) {
     p.primes++;
     p.stem = x->a;
   }
-  int ambiguous;
   if (x->kind == AST_MEMBER) {
     const AstExpr *left = ast_expr(b->ast, x->a);
     const AstExpr *owner = left->kind == AST_MEMBER ? ast_expr(b->ast, left->a) : NULL; /* wind.v.x */
-    int of_effect =
-        owner && owner->kind == AST_NAME &&
-        (scope_own(&b->scope, left->name, owner->name) || !scope_find(&b->scope, owner->name, NULL, &ambiguous));
-    int component = left->kind == AST_INDEX || of_effect ||
-                    (left->kind == AST_NAME && !scope_own(&b->scope, x->name, left->name) &&
-                     scope_find(&b->scope, left->name, NULL, &ambiguous));
+    int of_effect = owner && owner->kind == AST_NAME &&
+                    (scope_own(&b->scope, left->name, owner->name) || !entity_named(b, owner->name));
+    int component =
+        left->kind == AST_INDEX || of_effect ||
+        (left->kind == AST_NAME && !scope_own(&b->scope, x->name, left->name) && entity_named(b, left->name));
     if (component) {
       p.part = strlen(x->name) == 1 && strchr(letters, x->name[0]) ? (int)(strchr(letters, x->name[0]) - letters) : 4;
       p.stem = x->a;
@@ -177,12 +175,10 @@ static int computes_with_indices(const Builder *b, AstId after, AstId rhs) {
   for (AstId id = after + 1; id <= rhs; id++) {
     const AstExpr *x = ast_expr(b->ast, id);
     size_t k = 0;
-    int ambiguous;
     while (k < sizeof kinds / sizeof *kinds && kinds[k] != x->kind) k++;
     if (k == sizeof kinds / sizeof *kinds) return 0;
     if (x->kind == AST_POW && ast_expr(b->ast, x->b)->kind != AST_NUM) return 0;
-    if (x->kind == AST_CALL && (function_index(x->name) < 0 || scope_find(&b->scope, x->name, NULL, &ambiguous)))
-      return 0;
+    if (x->kind == AST_CALL && (function_index(x->name) < 0 || entity_named(b, x->name))) return 0;
   }
   return after < rhs;
 }

@@ -307,7 +307,7 @@ static void apply_unused_lets(Builder *b) {
   const AstStmt *wrong = NULL;
   for (uint32_t i = 0; i < b->lets.n; i++) {
     if (b->lets.at[i].stmt == wrong) continue;
-    resolve_let(b, i);
+    resolve_definition(b, ENT_LET, i);
     if (!b->state[ENT_LET].at[i].value.e) wrong = b->lets.at[i].stmt;
   }
 }
@@ -361,20 +361,18 @@ static void check_coords_in_lagrangian(Builder *b) {
 static void check_whole(Builder *b) {
   Model *m = b->m;
   if (b->diags->errors) return; /* a missing part may be one that was refused */
-  if (!m->coords.n && !m->states.n) {
+  if (!m->coords.n && !m->states.n)
     diag_error(b->diags, m->span,
                "the model has no coordinates and no states" HELP "declare a coordinate: `coord x [m]`");
-  }
   if (m->coords.n && !m->lagrangian) {
     diag_error(b->diags, m->coords.at[0].span, "there are coordinates but no Lagrangian");
     diag_help(b->diags, "give `lagrangian = ...`, or `kinetic = ...` and `potential = ...`, or `hamiltonian = ...`");
   }
   if (m->coords.n && m->lagrangian && !m->hamiltonian) check_coords_in_lagrangian(b);
   for (uint32_t i = 0; i < m->states.n; i++)
-    if (!m->states.at[i].flow && !m->states.at[i].coordinate) {
-      diag_error(b->diags, m->states.at[i].span, "the state `%s` has no flow", m->states.at[i].name);
-      diag_help(b->diags, "give its rate: `flow %s' = ...`", m->states.at[i].name);
-    }
+    if (!m->states.at[i].flow && !m->states.at[i].coordinate)
+      diag_error(b->diags, m->states.at[i].span, "the state `%s` has no flow" HELP "give its rate: `flow %s' = ...`",
+                 m->states.at[i].name, m->states.at[i].name);
 }
 
 static void check_defines(Builder *b) {
@@ -493,7 +491,7 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order, Inpu
   if (!first_order) want_rates_of_momenta(b);
   apply_unused_lets(b);
   each_active(b, symmetry, NULL); /* before outputs use charges: fixes their units */
-  for (uint32_t i = 0; i < b->observes.n; i++) resolve_observe(b, i);
+  for (uint32_t i = 0; i < b->observes.n; i++) resolve_definition(b, ENT_OBSERVE, i);
   each_active(b, expect, NULL);
   each_active(b, canonical, NULL);
   check_whole(b);

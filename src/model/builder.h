@@ -376,8 +376,12 @@ void add_definition(Builder *b, EntKind kind, Definition d);
 void declare_composed(Builder *b);
 
 /* Evaluates a let or an observable, unless it has a value already. */
-void resolve_let(Builder *b, uint32_t index);
-void resolve_observe(Builder *b, uint32_t index);
+void resolve_definition(Builder *b, EntKind kind, uint32_t index);
+
+/* The entity that a name means outside of effects, or NULL. */
+static inline const Entity *entity_named(const Builder *b, Name name) {
+  return scope_find(&b->scope, name, NULL, NULL);
+}
 
 /* Entity of a name; unknown and ambiguous names are reported. `declare` is the kind of declaration to suggest
  * ("state"), or NULL for any. */
@@ -428,6 +432,8 @@ Unit declared_unit(Builder *b, const AstStmt *st, Name effect);
 
 /* entities.c: declared unit of an entity, or NULL. */
 const Unit *entity_unit(const Builder *b, const Entity *e);
+/* The symbol of element i of the model's coordinates, states, parameters or inputs; of the first two its rate. */
+SymId entity_symbol(const Model *m, EntKind kind, int rate, uint32_t i);
 
 /* check_units.c */
 

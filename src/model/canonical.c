@@ -52,8 +52,7 @@ static uint32_t new_place(const Reader *r, Name name) {
 static uint32_t place_in_order(const Reader *r, uint32_t k) { return r->c.is_point ? k : k / 2 + k % 2 * r->c.n; }
 
 static int name_variable(Reader *r, uint32_t place, Name name, Span span) {
-  int ambiguous;
-  const Entity *other = scope_find(&r->b->scope, name, NULL, &ambiguous);
+  const Entity *other = entity_named(r->b, name);
   if (other) {
     diag_error(r->b->diags, span, "`%s` is %s of the model, and here a new variable", name, ent_kind_text(other->kind));
     diag_also(r->b->diags, other->span, "declared here; a new variable needs a name of its own");
@@ -312,9 +311,8 @@ static int check_pairs(Reader *r) {
   for (uint32_t i = 0; i < r->c.n && !r->c.is_point && !b->unitless; i++) {
     Dim product = dim_mul(b->dims, dim_of_symbol(r, r->c.fresh[i]), dim_of_symbol(r, r->c.fresh[r->c.n + i]));
     if (dim_equate(b->dims, product, action, r->spans[i])) continue;
-    diag_error(b->diags, r->spans[i], "units do not match: `%s*%s` is %s, and an action %s", r->names[i].name,
-               r->names[r->c.n + i].name, in_dim(b, product), in_dim(b, action));
-    return 0;
+    return diag_error(b->diags, r->spans[i], "units do not match: `%s*%s` is %s, and an action %s", r->names[i].name,
+                      r->names[r->c.n + i].name, in_dim(b, product), in_dim(b, action));
   }
   return 1;
 }

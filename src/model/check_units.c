@@ -1,6 +1,7 @@
 /* Dimension checks of operands, their messages, offsets of degC, and inferred units. Zero fits every dimension. */
 #include <string.h>
 
+#include "base/words.h"
 #include "model/resolve_impl.h"
 
 int is_zero(const Builder *b, const Value *v) {
@@ -43,10 +44,9 @@ static void report_mismatch(Eval *ev, Span span, AstId x, AstId y) {
                ast_short(b, bare));
     if (!dim_open_name(b->dims, v->dim))
       diag_help(b->diags, "give the number its unit: `%s [%s]`", ast_short(b, bare), unit);
-  } else {
+  } else
     diag_error(b->diags, span, "units do not match: `%s` is %s, `%s` %s", ast_short(b, x), in_unit(b, shown_unit(b, v)),
                ast_short(b, y), in_unit(b, shown_unit(b, w)));
-  }
   explain_dims(b, v->dim, w->dim);
 }
 
@@ -105,21 +105,12 @@ int refuse_point(Eval *ev, AstId operand, const char *why) {
 }
 
 int point_fits(Eval *ev, const AstExpr *x, AstId operand) {
-  static const char *const takes[] = {"if", "min", "max"};
   switch (x->kind) {
-  case AST_ADD:
-  case AST_SUB:
-  case AST_LT:
-  case AST_LE:
-  case AST_GT:
-  case AST_GE:
-  case AST_EQ:
-  case AST_NE:
+  case AST_ADD: case AST_SUB: case AST_LT: case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE:
   case AST_UNIT: return 1;
   case AST_CALL:
-    for (size_t i = 0; i < sizeof takes / sizeof *takes; i++)
-      if (strcmp(x->name, takes[i]) == 0) return 1;
-    return own_function(ev, x) || refuse_point(ev, operand, "no argument of a function");
+    return has_word("if min max", x->name) || own_function(ev, x) ||
+           refuse_point(ev, operand, "no argument of a function");
   default: return refuse_point(ev, operand, "cannot be multiplied");
   }
 }

@@ -35,9 +35,7 @@ static double in_declared(Builder *b, Expr x, const Unit *u, const char **digits
 /* Whether the target is the `period` of a family of motions, a name that the model does not declare. */
 static int is_period(Builder *b, const CommandValue *of) {
   const AstExpr *x = of->target ? ast_expr(b->ast, of->target) : NULL;
-  int ambiguous;
-  return of->follows && x && x->kind == AST_NAME && strcmp(x->name, "period") == 0 &&
-         !scope_find(&b->scope, x->name, NULL, &ambiguous);
+  return of->follows && x && x->kind == AST_NAME && strcmp(x->name, "period") == 0 && !entity_named(b, x->name);
 }
 
 /* Unit of the energy or of the charge that x is: of SI; 0: it is something else. */

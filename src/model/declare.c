@@ -23,11 +23,9 @@ static int declares_motion(const AstStmt *st) {
  * well. */
 static Name plain_name(Builder *b, const AstStmt *st, Name effect) {
   if (!effect) return st->name;
-  for (uint32_t i = 0; i < b->active.n; i++) {
-    const Active *a = &b->active.at[i];
+  vec_each(const Active, a, b->active)
     if (a->effect != effect && a->stmt->name == st->name && declares_motion(a->stmt))
       return intern_printf(b, "%s.%s", effect, st->name);
-  }
   return st->name;
 }
 
@@ -246,22 +244,11 @@ void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
     case STMT_FUNCTION: declare_function(b, st, effect); return;
     case STMT_OBSERVE: declare_observe(b, st, effect); return;
     case STMT_SYMMETRY: declare_symmetry(b, st, effect); return;
-    case STMT_CANONICAL:
-    case STMT_FOR:
-    case STMT_MODEL:
-    case STMT_INCLUDE: case STMT_NETWORK:
-    case STMT_MOMENTUM:
-    case STMT_HAMILTONIAN:
-    case STMT_LAGRANGIAN:
-    case STMT_CONSTRAINT:
-    case STMT_CONTACT:
-    case STMT_DRAW:
-    case STMT_GUIDE:
-    case STMT_KINETIC:
-    case STMT_POTENTIAL:
-    case STMT_DISSIPATION: case STMT_FORCE: case STMT_FLOW: case STMT_MAP: case STMT_EXPECT:
-    case STMT_EVENT: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:
-    case STMT_START: case STMT_EXACT: case STMT_SET: case STMT_USE: case STMT_SPAN: case STMT_METHOD:
+    case STMT_CANONICAL: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE: case STMT_NETWORK: case STMT_MOMENTUM:
+    case STMT_HAMILTONIAN: case STMT_LAGRANGIAN: case STMT_CONSTRAINT: case STMT_CONTACT: case STMT_DRAW:
+    case STMT_GUIDE: case STMT_KINETIC: case STMT_POTENTIAL: case STMT_DISSIPATION: case STMT_FORCE: case STMT_FLOW:
+    case STMT_MAP: case STMT_EXPECT: case STMT_EVENT: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES:
+    case STMT_SCENE: case STMT_START: case STMT_EXACT: case STMT_SET: case STMT_USE: case STMT_SPAN: case STMT_METHOD:
     case STMT_TOLERANCE: case STMT_OUTPUT: case STMT_MONITOR: case STMT_MEASURE: case STMT_LIKE: case STMT_STOP: return;
   }
 }

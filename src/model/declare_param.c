@@ -22,8 +22,7 @@ static int has_sign(AstSign sign, long double x) {
 void warn_signs(Builder *b) {
   const Model *m = b->m;
   long double *x = model_constants(m);
-  for (uint32_t i = 0; i < m->params.n; i++) {
-    const Param *p = &m->params.at[i];
+  vec_each(const Param, p, m->params) {
     if (!p->value) continue;
     expr_eval(b->g, &p->value, 1, x, &x[p->sym]);
     if (expr_is_num(b->g, p->value) || has_sign(p->sign, x[p->sym])) continue;

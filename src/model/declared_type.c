@@ -114,10 +114,9 @@ static void report_rotation(Builder *b, const AstStmt *st) {
   } else if (st->unit.n) {
     diag_error(b->diags, st->unit.span, "a rotation has no unit: its four numbers are those of a unit quaternion");
     diag_help(b->diags, "write `coord %s: rotation`", st->name);
-  } else {
+  } else
     diag_error(b->diags, st->name_span,
                "a rotation is not an angle, and cannot be `periodic`" HELP "write `coord %s: rotation`", st->name);
-  }
 }
 
 /* Number of components of a declared type (vec2, vec3, rotation); 0, reported, where the kind of statement cannot

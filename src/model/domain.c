@@ -97,19 +97,10 @@ Expr domain_of_node(const Eval *ev, AstId id, const Value *v) {
   const Builder *b = ev->b;
   const AstExpr *x = ast_expr(b->ast, id);
   switch (x->kind) {
-  case AST_NAME:
-  case AST_INDEX:
-  case AST_SUM:
-  case AST_PRODUCT:
-  case AST_NUM:
-  case AST_LIST:
-  case AST_STRING:
-  case AST_BIND:
-  case AST_ERROR: return v->domain;
-  case AST_ADD:
-  case AST_SUB: return chain_domain(ev, 0);
-  case AST_MUL:
-  case AST_DIV: return chain_domain(ev, 1);
+  case AST_NAME: case AST_INDEX: case AST_SUM: case AST_PRODUCT: case AST_NUM: case AST_LIST: case AST_STRING:
+  case AST_BIND: case AST_ERROR: return v->domain;
+  case AST_ADD: case AST_SUB: return chain_domain(ev, 0);
+  case AST_MUL: case AST_DIV: return chain_domain(ev, 1);
   case AST_POW: {
     const Value *base = value_of(ev, x->a), *e = value_of(ev, x->b);
     return domain_and(b, domain_and(b, base->domain, e->domain), power_domain(b, base->e, e->e));

@@ -178,10 +178,8 @@ static int read_range(DrawReader *r, AstId bind, Value ends[2]) {
   Builder *b = r->d->b;
   const AstExpr *x = ast_expr(b->ast, bind);
   AstId ids[] = {x->a, x->b};
-  if (x->kind != AST_BIND) {
-    diag_error(b->diags, x->span, "a range is missing" HELP "for example `%s`", r->row->example);
-    return 0;
-  }
+  if (x->kind != AST_BIND)
+    return diag_error(b->diags, x->span, "a range is missing" HELP "for example `%s`", r->row->example);
   for (int k = 0; k < 2; k++) {
     ends[k] = option_value(r, ids[k]);
     if (ends[k].e && !need_number(b, ast_expr(b->ast, ids[k])->span, ends[k].n)) return 0;
@@ -189,9 +187,8 @@ static int read_range(DrawReader *r, AstId bind, Value ends[2]) {
   }
   int plain = r->st->rhs && (ends[0].bare || ends[1].bare); /* a number is a length */
   if (plain || dims_agree(b, &ends[0], &ends[1], x->span)) return 1;
-  diag_error(b->diags, x->span, "units do not match: the range begins at %s and ends at %s", in_dim(b, ends[0].dim),
-             in_dim(b, ends[1].dim));
-  return 0;
+  return diag_error(b->diags, x->span, "units do not match: the range begins at %s and ends at %s",
+                    in_dim(b, ends[0].dim), in_dim(b, ends[1].dim));
 }
 
 /* Point of a curve at value s of its variable. */
@@ -256,14 +253,11 @@ static int check_options(DrawReader *r) {
   const AstStmt *st = r->st;
   for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) {
     const AstExpr *x = ast_expr(b->ast, i);
-    if (!has_word(r->row->needs, x->name) && !has_word(r->row->takes, x->name)) {
-      diag_error(b->diags, x->span, "a %s has no `%s`" HELP "it takes %s%s%s: `%s`", st->name, x->name, r->row->needs,
-                 r->row->needs[0] ? " " : "", r->row->takes, r->row->example);
-      return 0;
-    }
+    if (!has_word(r->row->needs, x->name) && !has_word(r->row->takes, x->name))
+      return diag_error(b->diags, x->span, "a %s has no `%s`" HELP "it takes %s%s%s: `%s`", st->name, x->name,
+                        r->row->needs, r->row->needs[0] ? " " : "", r->row->takes, r->row->example);
     if (ast_option_value(b->ast, st, x->name) == x->args) continue;
-    diag_error(b->diags, x->span, "`%s` is given twice" HELP "leave out one of them", x->name);
-    return 0;
+    return diag_error(b->diags, x->span, "`%s` is given twice" HELP "leave out one of them", x->name);
   }
   const char *word;
   for (size_t k = 0; (word = word_at(b->arena, r->row->needs, k)) && *word; k++) {

@@ -176,10 +176,9 @@ int is_use_none(const AstStmt *st) { return st->kind == STMT_USE && strcmp(st->n
 /* Earlier `use` of the same effect in this scene, or NULL. */
 static const AstStmt *used_before(const AstStmt *scene, const AstStmt *x) {
   const AstStmt *found = NULL;
-  for (const AstStmt *s = scene->body; s != x; s = s->next) {
+  for (const AstStmt *s = scene->body; s != x; s = s->next)
     if (is_use_none(s)) found = NULL;
     else if (s->kind == STMT_USE && s->name == x->name) found = s;
-  }
   return found;
 }
 
@@ -247,10 +246,7 @@ int names_off_effect(const Builder *b, AstId value) {
   Span all = ast_expr(b->ast, value)->span;
   for (AstId i = 1; i < b->ast->exprs.n; i++) {
     const AstExpr *x = ast_expr(b->ast, i);
-    int ambiguous;
-    if (x->kind != AST_NAME || x->span.begin < all.begin || x->span.end > all.end ||
-        scope_find(&b->scope, x->name, NULL, &ambiguous))
-      continue;
+    if (x->kind != AST_NAME || x->span.begin < all.begin || x->span.end > all.end || entity_named(b, x->name)) continue;
     const AstStmt *effect = find_named(b->ast, STMT_EFFECT, x->name);
     if (!effect) effect = declaring_effect(b, x->name);
     if (effect && !uses_effect(b, effect->name)) return 1;

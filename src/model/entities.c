@@ -45,6 +45,13 @@ const Unit *entity_unit(const Builder *b, const Entity *e) {
   return NULL;
 }
 
+SymId entity_symbol(const Model *m, EntKind kind, int rate, uint32_t i) {
+  return kind == ENT_COORD   ? (rate ? m->coords.at[i].v : m->coords.at[i].q)
+         : kind == ENT_STATE ? (rate ? m->states.at[i].rate : m->states.at[i].z)
+         : kind == ENT_PARAM ? m->params.at[i].sym
+                             : m->inputs.at[i].sym;
+}
+
 int is_momentum_name(Name name) { return name[0] == 'p' && (strlen(name) <= 2 || name[1] == '_'); }
 
 long double *model_constants(const Model *m) {

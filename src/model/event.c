@@ -94,10 +94,9 @@ static void add_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
 
 /* Angular velocities are set last, as their rates depend on the rotations after the event. */
 static void add_actions(Builder *b, const AstStmt *event, Name effect, Event *ev) {
-  for (const AstStmt *s = event->body; s; s = s->next) {
+  for (const AstStmt *s = event->body; s; s = s->next)
     if (s->kind == STMT_STOP) ev->stop = 1;
     else if (ast_expr(b->ast, s->lhs)->kind != AST_CALL) add_action(b, s, effect, ev);
-  }
   uint32_t n = ev->actions.n;
   for (uint32_t i = 0; i < b->rotations.n; i++)
     for (uint32_t k = 0; k < n; k++)

@@ -30,11 +30,9 @@ static const Entity *find_param(Builder *b, const char *word, int *off) {
     if (e->kind == ENT_CONST) diag_help(b->diags, "constants are set when compiling: -D %s=...", word);
   } else {
     VEC(Name) known = {0};
-    for (uint32_t i = 0; i < b->scope.all.n; i++) {
-      const Entity *x = &b->scope.all.at[i];
+    vec_each(const Entity, x, b->scope.all)
       if (x->kind == ENT_PARAM)
         vec_push(b->arena, &known, x->effect ? intern_printf(b, "%s.%s", x->effect, x->name) : x->name);
-    }
     Name near = suggest(word, known.at, known.n);
     diag_error(b->diags, (Span){0}, "--fix %s: the model has no such parameter", word);
     if (near) diag_help(b->diags, "did you mean `%s`?", near);
@@ -78,8 +76,7 @@ static int is_free_param(const Symbol *s, const void *data) {
 static void evaluate(Builder *b) {
   Model *m = b->m;
   long double *x = model_constants(m);
-  for (uint32_t i = 0; i < m->params.n; i++) {
-    Param *p = &m->params.at[i];
+  vec_each(Param, p, m->params) {
     expr_eval(b->g, &p->value, 1, x, &x[p->sym]);
     if (!p->fixed) continue;
     p->number = expr_is_num(b->g, p->value) ? expr_number(b->g, p->value) : num_double((double)x[p->sym]);

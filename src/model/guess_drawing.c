@@ -230,13 +230,9 @@ static void draw_coordinates(Guess *k) {
     family = family && !of.at[i].name;
     angles = angles && of.at[i].angle;
   }
-  if (family && !angles) {
-    draw_row(k, &of);
-  } else if (angles && of.n) {
-    draw_angles(k, &of);
-  } else if (!draw_polar(k, &of)) {
-    draw_lines(k, &of);
-  }
+  if (family && !angles) draw_row(k, &of);
+  else if (angles && of.n) draw_angles(k, &of);
+  else if (!draw_polar(k, &of)) draw_lines(k, &of);
 }
 
 /* --- bodies --- */
@@ -268,8 +264,7 @@ static void draw_rotations(Guess *k) {
 
 static void draw_balls(Guess *k) {
   Builder *b = k->d->b;
-  for (uint32_t i = 0; i < k->points.n; i++) {
-    const DrawnPoint *p = &k->points.at[i];
+  vec_each(const DrawnPoint, p, k->points) {
     int moves = 0;
     for (uint32_t c = 0; c < p->n; c++) moves |= changes(b->g, p->at[c]);
     if (!moves) continue;

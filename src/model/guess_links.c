@@ -112,8 +112,7 @@ static void link_arms(Guess *k, const DrawnPoint *p, Arms *a) {
 
 void guess_arms(Guess *k) {
   ExprGraph *g = k->d->b->g;
-  for (uint32_t i = 0; i < k->points.n; i++) {
-    const DrawnPoint *p = &k->points.at[i];
+  vec_each(const DrawnPoint, p, k->points) {
     Arms a = {0};
     for (uint32_t c = 0; c < p->n; c++) split_terms(g, p->at[c], c, &a);
     if (a.n) link_arms(k, p, &a);
@@ -185,8 +184,7 @@ static int link_distance(Guess *k, ShapeKind kind, const char *role, Expr e) {
 
 void guess_rods(Guess *k) {
   Builder *b = k->d->b;
-  for (uint32_t i = 0; i < b->m->constraints.n; i++) {
-    const Constraint *c = &b->m->constraints.at[i];
+  vec_each(const Constraint, c, b->m->constraints) {
     if (c->inside) continue;
     int done = link_distance(k, SHAPE_ROD, "link", c->c);
     Expr e = body_of(b->g, c->c);
@@ -311,8 +309,7 @@ static void note_radii(Guess *k, Expr gap, Expr radius, double times) {
 
 void guess_walls(Guess *k) {
   Builder *b = k->d->b;
-  for (uint32_t i = 0; i < b->m->contacts.n; i++) {
-    const Contact *c = &b->m->contacts.at[i];
+  vec_each(const Contact, c, b->m->contacts) {
     if (c->is_tangent || c->margin) continue;
     Expr gap = body_of(b->g, c->gap), radius, n[3];
     double times = 0;

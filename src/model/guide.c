@@ -51,13 +51,12 @@ static int read_squares(Builder *b, Expr sum, Contact *t) {
 static Expr split_product(Builder *b, Expr product, Expr of, Expr *base, Num *power) {
   ExprGraph *g = b->g;
   *base = 0;
-  for (ExprPair x = {0}; expr_next_pair(g, product, EX_PROD, &x);) {
+  for (ExprPair x = {0}; expr_next_pair(g, product, EX_PROD, &x);)
     if (!has_multiplier(b, x.of)) {
       Expr factor = expr_pow_num(g, x.of, x.num);
       of = expr_mul(g, of, factor);
     } else if (*base) return 0;
     else *base = x.of, *power = x.num;
-  }
   return of;
 }
 

@@ -17,8 +17,7 @@ void find_hamiltonian(Builder *b) {
 
 static int is_input_rate(const Builder *b, AstId prime) {
   const AstExpr *of = ast_expr(b->ast, ast_expr(b->ast, prime)->a);
-  int ambiguous;
-  const Entity *e = of->kind == AST_NAME ? scope_find(&b->scope, of->name, NULL, &ambiguous) : NULL;
+  const Entity *e = of->kind == AST_NAME ? entity_named(b, of->name) : NULL;
   return e && e->kind == ENT_INPUT;
 }
 

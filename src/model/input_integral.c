@@ -65,8 +65,7 @@ static const Spline *integral(Builder *b, const Spline *of, int level) {
 static const Input *integrand(Builder *b, const Input *in, int *level) {
   const AstExpr *x = ast_expr(b->ast, in->integral), *of = x->args ? ast_expr(b->ast, x->args) : NULL;
   const AstExpr *how = of && of->next ? ast_expr(b->ast, of->next) : NULL;
-  int ambiguous = 0;
-  const Entity *e = of && of->kind == AST_NAME ? scope_find(&b->scope, of->name, in->effect, &ambiguous) : NULL;
+  const Entity *e = of && of->kind == AST_NAME ? scope_find(&b->scope, of->name, in->effect, NULL) : NULL;
   *level = how && how->kind == AST_NAME && strcmp(how->name, "level") == 0;
   int odd = how && (!*level || how->next);
   if (!e || e->kind != ENT_INPUT || odd || &b->m->inputs.at[e->index] >= in) {
@@ -88,8 +87,7 @@ static const Input *integrand(Builder *b, const Input *in, int *level) {
 }
 
 void fill_input_integrals(Builder *b) {
-  for (uint32_t i = 0; i < b->m->inputs.n; i++) {
-    Input *in = &b->m->inputs.at[i];
+  vec_each(Input, in, b->m->inputs) {
     int level;
     const Input *of = in->integral ? integrand(b, in, &level) : NULL;
     if (!of) continue;

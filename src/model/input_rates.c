@@ -142,8 +142,7 @@ static void warn_of_corners(Builder *b, const Input *in) {
 
 void fill_input_rates(Builder *b) {
   Model *m = b->m;
-  for (uint32_t i = 0; i < m->inputs.n; i++) {
-    Input *in = &m->inputs.at[i];
+  vec_each(Input, in, m->inputs) {
     if (!in->rate) continue;
     Input *rate = &m->inputs.at[in->rate];
     if (in->table) in->table = quintic(b, in);

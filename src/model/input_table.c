@@ -88,10 +88,7 @@ static char find_separator(const Table *t, Piece line) {
 
 static int number(const Table *t, Piece p, double *x) { return num_parse_double(text_of(t, p), x); }
 
-static void mistake(Table *t, Piece p, const char *what) {
-  diag_error(t->b->diags, span_of(t, p), "%s", what);
-  t->mistakes++;
-}
+#define MISTAKE(t, p, ...) ((t)->mistakes++, diag_error((t)->b->diags, span_of(t, p), __VA_ARGS__))
 
 /* A file of another kind: the mistake stands in the model, and the file is not shown. */
 static void no_table(Table *t, const char *why) {
@@ -160,7 +157,7 @@ static void check_unit(Table *t, Piece field, const Unit *want, const char *whos
   if (t->b->diags->errors > errors) t->mistakes++;
   else if (!*wanted || !same_unit(t, &is, &second, span_of(t, field))) {
     const char *other = *wanted ? arena_printf(t->b->arena, "is in [%s]", wanted) : "has no unit";
-    mistake(t, field, arena_printf(t->b->arena, "this column is in [%s], and %s %s", text, whose, other));
+    MISTAKE(t, field, "this column is in [%s], and %s %s", text, whose, other);
     if (want) diag_help(t->b->diags, "convert the column, or declare `input %s [%s] = ...`", t->stem, text);
     else diag_help(t->b->diags, "convert the column to seconds");
   }
@@ -175,8 +172,7 @@ static void check_twins(Table *t, uint32_t k) {
   if (again == t->fields.n) return;
   const char *called = text_of(t, name),
              *but = is_called(t, t->fields.at[again], called, &unit) < 2 ? ", but for upper and lower case" : "";
-  mistake(t, t->fields.at[again], arena_printf(t->b->arena, "two columns are called `%s`%s", called, but));
-  diag_help(t->b->diags, "give one of them another name");
+  MISTAKE(t, t->fields.at[again], "two columns are called `%s`%s" HELP "give one of them another name", called, but);
 }
 
 static void read_head(Table *t, Piece line) {
@@ -185,13 +181,14 @@ static void read_head(Table *t, Piece line) {
   t->value = find_column(t, 0, t->stem, n > 2 ? n : 1 - t->time);
   if (n < 2) no_table(t, "it has one column");
   else if ((again = find_column(t, 0, "", n)) < n) {
-    mistake(t, again + 1 < n ? (Piece){t->fields.at[again].begin, t->fields.at[again + 1].begin} : line,
-            arena_printf(t->b->arena, "column %u has no name", again + 1));
-    diag_help(t->b->diags, "name every column, as in `t,%s`, and end no line with a separator", t->stem);
+    Piece column = {t->fields.at[again].begin, again + 1 < n ? t->fields.at[again + 1].begin : 0};
+    MISTAKE(t, again + 1 < n ? column : line,
+            "column %u has no name" HELP "name every column, as in `t,%s`, and end no line with a separator", again + 1,
+            t->stem);
   } else if (t->value == n) {
-    mistake(t, line, arena_printf(t->b->arena, "none of these %u columns is called `%s`", n, t->stem));
-    diag_help(t->b->diags, "give the column of the values that name");
-  } else if (t->value == t->time) mistake(t, t->fields.at[0], "the column of the time is also that of the value");
+    MISTAKE(t, line, "none of these %u columns is called `%s`" HELP "give the column of the values that name", n,
+            t->stem);
+  } else if (t->value == t->time) MISTAKE(t, t->fields.at[0], "the column of the time is also that of the value");
   else {
     check_unit(t, t->fields.at[t->time], NULL, "the time");
     check_unit(t, t->fields.at[t->value], &t->in->unit, arena_printf(t->b->arena, "`%s`", t->stem));
@@ -207,15 +204,15 @@ static int read_number(Table *t, Piece line, uint32_t column, const char *what, 
   Builder *b = t->b;
   uint32_t n = t->fields.n;
   if (n <= column) {
-    mistake(t, line, arena_printf(b->arena, "the %s is in column %u, but this row has %u", what, column + 1, n));
-    diag_help(b->diags, "a row is `time, value`; a comment begins with `#`");
+    MISTAKE(t, line,
+            "the %s is in column %u, but this row has %u" HELP "a row is `time, value`; a comment begins with `#`",
+            what, column + 1, n);
     return 0;
   }
   *field = t->fields.at[column];
   if (number(t, *field, x)) return 1;
-  if (field->begin == field->end)
-    mistake(t, (Piece){field->begin, field->begin + 1}, arena_printf(b->arena, "the %s is missing", what));
-  else mistake(t, *field, arena_printf(b->arena, "the %s is not a number", what));
+  if (field->begin == field->end) MISTAKE(t, ((Piece){field->begin, field->begin + 1}), "the %s is missing", what);
+  else MISTAKE(t, *field, "the %s is not a number", what);
   if (memchr(t->file.text + field->begin, ',', field->end - field->begin))
     diag_help(b->diags, "numbers are written with a point: `0.5`");
   else
@@ -234,8 +231,7 @@ static void read_row(Table *t, Piece line) {
     return;
   }
   if (t->fields.n != t->columns && t->fields.n > t->time && t->fields.n > t->value) {
-    mistake(t, line,
-            arena_printf(t->b->arena, "this row has %u fields, and the first line %u", t->fields.n, t->columns));
+    MISTAKE(t, line, "this row has %u fields, and the first line %u", t->fields.n, t->columns);
     diag_help(t->b->diags, t->separator == ',' ? "numbers are written with a point, `0.5`, and separated by commas"
                                                : "each row has one number for each column");
     return;
@@ -248,10 +244,8 @@ static void read_row(Table *t, Piece line) {
     char now[32], then[32];
     num_format_double(now, time);
     num_format_double(then, before);
-    mistake(t, at,
-            arena_printf(t->b->arena,
-                         jumps ? "this is the third row at %s" : "times must increase, and %s does not come after %s",
-                         now, then));
+    MISTAKE(t, at, jumps ? "this is the third row at %s" : "times must increase, and %s does not come after %s", now,
+            then);
     diag_help(t->b->diags, "sort the rows; a jump is two rows of one time: the value before it, and the one after it");
     return;
   }
@@ -280,8 +274,7 @@ static void read_line(Table *t, Piece line) {
   if (first) t->columns = t->fields.n;
   if (first && !number(t, t->fields.at[0], &x)) read_head(t, line);
   else if (first && t->columns > 2) {
-    mistake(t, line,
-            arena_printf(t->b->arena, "this table has %u columns, and no first line that names them", t->columns));
+    MISTAKE(t, line, "this table has %u columns, and no first line that names them", t->columns);
     diag_help(t->b->diags, "begin with a line of names, `t,%s,...`; numbers are written with a point, `0.5`", t->stem);
     t->wrong_head = 1;
   } else read_row(t, line);
@@ -294,8 +287,8 @@ static void read_lines(Table *t) {
     read_line(t, (Piece){at, end});
     at = end + 1;
     if (t->numbers.n <= 2 * TABLE_ROWS_MAX) continue;
-    mistake(t, (Piece){0, 1}, arena_printf(t->b->arena, "a table has at most %d rows", TABLE_ROWS_MAX));
-    diag_help(t->b->diags, "leave rows out: a cubic runs between each two");
+    MISTAKE(t, ((Piece){0, 1}), "a table has at most %d rows" HELP "leave rows out: a cubic runs between each two",
+            TABLE_ROWS_MAX);
     return;
   }
 }

@@ -57,11 +57,6 @@ static int is_function(const char *name) {
   return has_word(FUNCTIONS(WORD) "sqrt abs floor sign atan2 hypot min max pow", name);
 }
 
-static const Entity *entity_named(Builder *b, Name name) {
-  int ambiguous;
-  return scope_find(&b->scope, name, NULL, &ambiguous);
-}
-
 static CallKind call_kind(const MeasureReader *r, AstId id) {
   const AstExpr *x = ast_expr(r->b->ast, id);
   const Entity *e = entity_named(r->b, x->name);

@@ -45,9 +45,8 @@ static void check_value(Builder *b, const MethodOption *o, const Option *given, 
     diag_error(b->diags, span, "the option `%s` is a number" HELP "write `%s = 0.01`", o->name, o->name);
   } else if (method_option_refuses(o, given->text ? NAN : given->value, b->m->constraints.n > 0, allowed)) {
     const char *value = given->text ? given->text : arena_printf(b->arena, "%.6g", given->value);
-    diag_error(b->diags, span, "the option `%s` cannot be %s%s%s", o->name, given->text ? "`" : "", value,
-               given->text ? "`" : "");
-    diag_help(b->diags, "%s", allowed);
+    diag_error(b->diags, span, "the option `%s` cannot be %s%s%s" HELP "%s", o->name, given->text ? "`" : "", value,
+               given->text ? "`" : "", allowed);
   }
 }
 

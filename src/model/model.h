@@ -550,6 +550,12 @@ static inline int model_is_contact_switch(const Model *m, SymId sym) {
   return 0;
 }
 
+/* Whether a coordinate is declared periodic. */
+static inline int model_is_periodic(const Model *m, SymId coordinate) {
+  const Symbol *q = expr_symbol(m->g, coordinate);
+  return q->kind == SYM_COORD ? m->coords.at[q->index].periodic : m->states.at[q->index].periodic;
+}
+
 /* Inputs that only the runtime sets: one for each contact, two for a tangent. */
 static inline uint32_t model_contact_inputs(const Model *m) {
   uint32_t n = m->contacts.n;

@@ -28,9 +28,8 @@ static void monitor_exact(Builder *b, Monitor mon, Span span) {
 /* Charge named by x: 0 the energy, k + 1 the charge of symmetry k; -1: none. */
 static int charge_named(Builder *b, const AstExpr *x) {
   const Entity *e = NULL;
-  int ambiguous;
   if (x->kind == AST_NAME && strcmp(x->name, "energy") == 0) return 0;
-  if (x->kind == AST_NAME) e = scope_find(&b->scope, x->name, NULL, &ambiguous);
+  if (x->kind == AST_NAME) e = entity_named(b, x->name);
   if (x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME)
     e = scope_own(&b->scope, x->name, ast_expr(b->ast, x->a)->name);
   return e && e->kind == ENT_SYMMETRY ? (int)e->index + 1 : -1;

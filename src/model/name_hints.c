@@ -226,10 +226,8 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
     return;
   Name *known = ARENA_ARRAY(b->arena, Name, b->scope.all.n + 3);
   uint32_t n = 0;
-  for (uint32_t i = 0; i < b->scope.all.n; i++) {
-    const Entity *e = &b->scope.all.at[i];
+  vec_each(const Entity, e, b->scope.all)
     if (!e->effect || e->effect == effect || !scope_own(&b->scope, e->name, NULL)) known[n++] = e->name;
-  }
   known[n++] = "t";
   known[n++] = "pi";
   if (is_asked(b, span) && b->m->lagrangian) known[n++] = "energy";
@@ -283,8 +281,7 @@ void report_no_member(Builder *b, Span span, Name effect, Name name) {
 
 void warn_unit_is_constant(Builder *b, const AstUnit *u) {
   if (u->n != 1) return;
-  int ambiguous;
-  const Entity *e = scope_find(&b->scope, u->at[0].name, NULL, &ambiguous);
+  const Entity *e = entity_named(b, u->at[0].name);
   if (!e || e->kind != ENT_CONST) return;
   diag_warning(b->diags, u->span, "`[%s]` is a unit here, not the constant `%s`", u->text, e->name);
   diag_help(b->diags, "an index touches its name: `x[%s]`", e->name);

@@ -5,10 +5,9 @@
 /* Entity at the stem of an output, ignoring indices, component and primes; or NULL. */
 static const Entity *named(Builder *b, const Target *p) {
   const AstExpr *x = ast_expr(b->ast, p->stem);
-  int ambiguous;
   if (p->wrong) return NULL;
   if (x->kind == AST_MEMBER) return scope_own(&b->scope, x->name, ast_expr(b->ast, x->a)->name);
-  return scope_find(&b->scope, x->name, NULL, &ambiguous);
+  return entity_named(b, x->name);
 }
 
 /* Unit of an output: the name's declared unit, otherwise none yet: fill_inferred_units derives it from the
@@ -102,9 +101,8 @@ int add_error(Builder *b, const Exact *x, Span span) {
 
 /* 1 for exact(q) or error(q), unless the model declares a function of that name. */
 static int is_closed_form(Builder *b, const AstExpr *x) {
-  int ambiguous;
   if (x->kind != AST_CALL || !x->args || (strcmp(x->name, "exact") != 0 && strcmp(x->name, "error") != 0)) return 0;
-  const Entity *e = scope_find(&b->scope, x->name, NULL, &ambiguous);
+  const Entity *e = entity_named(b, x->name);
   return !e || e->kind != ENT_FUNCTION;
 }
 

@@ -84,8 +84,7 @@ void check_sizes(Builder *b) {
   long double *x = model_constants(m), f;
   for (uint32_t i = 0; i < m->params.n; i++)
     if (m->params.at[i].value) expr_eval(b->g, &m->params.at[i].value, 1, x, &x[m->params.at[i].sym]);
-  for (uint32_t i = 0; i < m->sizes.n; i++) {
-    const ModelSize *one = &m->sizes.at[i];
+  vec_each(const ModelSize, one, m->sizes) {
     if (one->moves) continue;
     expr_eval(b->g, &one->value, 1, x, &f);
     const char *size = arena_printf(b->arena, "%.6Lg", f);

@@ -68,13 +68,6 @@ typedef struct {
   VEC(Expr) first, second; /* symbols of the two representatives in the same places */
 } Arguments;
 
-static SymId member_symbol(const Model *m, EntKind kind, int rate, uint32_t i) {
-  return kind == ENT_COORD   ? (rate ? m->coords.at[i].v : m->coords.at[i].q)
-         : kind == ENT_STATE ? (rate ? m->states.at[i].rate : m->states.at[i].z)
-         : kind == ENT_PARAM ? m->params.at[i].sym
-                             : m->inputs.at[i].sym;
-}
-
 /* Position of the first argument of a family, whose members become arguments once. */
 static uint32_t block_of(Arguments *a, const Read *r) {
   const Entity *e = r->e;
@@ -86,7 +79,7 @@ static uint32_t block_of(Arguments *a, const Read *r) {
   vec_push(a->arena, &a->blocks, *r);
   vec_push(a->arena, &a->base, base);
   for (uint32_t k = 0; k < entity_size(e); k++)
-    vec_push(a->arena, &a->args, expr_symbol(a->g, member_symbol(a->m, e->kind, r->rate, e->index + k))->node);
+    vec_push(a->arena, &a->args, expr_symbol(a->g, entity_symbol(a->m, e->kind, r->rate, e->index + k))->node);
   return base;
 }
 
@@ -112,8 +105,7 @@ static SymKind kind_of(const Read *r) {
 }
 
 const Read *quantified_read_of(const struct Quantified *q, const Symbol *s, int64_t *part) {
-  for (uint32_t k = 0; k < q->reads.n; k++) {
-    const Read *r = &q->reads.at[k];
+  vec_each(const Read, r, q->reads) {
     *part = (int64_t)s->index - r->e->index - at_pair(quantified_element(r), q->pair[0]);
     if (kind_of(r) == s->kind && *part >= 0 && *part < (r->e->parts ? r->e->parts : 1)) return r;
   }
@@ -121,7 +113,7 @@ const Read *quantified_read_of(const struct Quantified *q, const Symbol *s, int6
 }
 
 SymId quantified_symbol(const Model *m, const struct Quantified *q, const Read *r, int64_t part) {
-  return member_symbol(m, r->e->kind, r->rate,
+  return entity_symbol(m, r->e->kind, r->rate,
                        r->e->index + (uint32_t)(at_pair(quantified_element(r), q->pair[0]) + part));
 }
 
@@ -176,7 +168,7 @@ static int add_symbol(Arguments *a, Expr node) {
     at = quantified_turns(a->q, x);
     uint32_t there = r->e->index + (uint32_t)(at_pair(quantified_element(r), a->q->pair[1]) + part);
     vec_push(a->arena, &a->first, node);
-    vec_push(a->arena, &a->second, expr_symbol(a->g, member_symbol(a->m, r->e->kind, r->rate, there))->node);
+    vec_push(a->arena, &a->second, expr_symbol(a->g, entity_symbol(a->m, r->e->kind, r->rate, there))->node);
   } else {
     vec_push(a->arena, &a->args, node);
   }
@@ -311,9 +303,8 @@ static int may_write_out(const Eval *ev, const struct Quantified *q, uint64_t tu
            (unsigned long long)turns, RANGE_MAX, why, help);
     return 0;
   }
-  diag_note(b->diags, span, "`%s` is written out, %llu terms, some %llu MB: %s", sum, (unsigned long long)turns,
-            (unsigned long long)(turns * TERM_KB / 1024), why);
-  diag_help(b->diags, "%s", help);
+  diag_note(b->diags, span, "`%s` is written out, %llu terms, some %llu MB: %s" HELP "%s", sum,
+            (unsigned long long)turns, (unsigned long long)(turns * TERM_KB / 1024), why, help);
   return 1;
 }
 

@@ -187,8 +187,7 @@ static int refused(struct Quantified *q, AstId where, const char *why) {
 /* The only statement that defines a family of lets; NULL: several do, or a `for` around it. */
 static const AstStmt *only_definition(const Builder *b, const Entity *e) {
   const AstStmt *st = NULL;
-  for (uint32_t k = 0; k < b->lets.n; k++) {
-    const Definition *d = &b->lets.at[k];
+  vec_each(const Definition, d, b->lets) {
     if (d->stmt->name != b->lets.at[e->index].stmt->name || d->effect != b->lets.at[e->index].effect) continue;
     if ((st && d->stmt != st) || d->naround) return NULL;
     st = d->stmt;

@@ -4,10 +4,9 @@
 
 void check_names_once(Builder *b, const FileIndex *file) {
   const AstStmt *none = find_named(b->ast, STMT_EFFECT, "none");
-  if (none) {
+  if (none)
     diag_error(b->diags, none->name_span,
                "an effect cannot be called `none`: `use none` turns all off" HELP "choose another name");
-  }
   for (uint32_t i = 0; i < file->repeated.n; i++) {
     const AstStmt *s = file->repeated.at[i];
     diag_error(b->diags, s->name_span, "the %s `%s` is declared twice", s->kind == STMT_SCENE ? "scene" : "effect",

@@ -70,9 +70,8 @@ static void mark(Eval *ev) {
 static void warn_of_still(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   const AstExpr *of = ast_expr(b->ast, x->a);
-  int ambiguous;
   while (of->kind == AST_INDEX || of->kind == AST_MEMBER) of = ast_expr(b->ast, of->a);
-  const Entity *e = of->kind == AST_NAME ? scope_find(&b->scope, of->name, ev->effect, &ambiguous) : NULL;
+  const Entity *e = of->kind == AST_NAME ? scope_find(&b->scope, of->name, ev->effect, NULL) : NULL;
   if (!e || (e->kind != ENT_PARAM && e->kind != ENT_CONST)) return;
   const char *what = e->kind == ENT_PARAM ? "parameter" : "constant";
   diag_warning(b->diags, x->span, "this is 0: `%s` is a %s, which does not move", of->name, what);
@@ -242,7 +241,6 @@ static int run(Eval *ev) {
 /* --- evaluations, and the definitions that they wait for --- */
 
 enum { SHALLOW = 8 };
-typedef VEC(Eval *) EvalStack;
 
 static Eval *begin(Builder *b, AstId id, Context where, Name effect) {
   Eval *ev = b->idle.n ? b->idle.at[--b->idle.n] : ARENA_NEW(b->arena, Eval);
@@ -364,38 +362,28 @@ static void finish_definition(Eval *ev) {
   if (ev->kind == ENT_FUNCTION) finish_instance(b, b->instances.at[ev->definition], v);
 }
 
-static void run_all(Builder *b, EvalStack *stack) {
-  while (stack->n) {
-    Eval *top = stack->at[stack->n - 1];
+/* Runs an evaluation, and those that it waits for. */
+static void run_all(Builder *b, Eval *first) {
+  Eval *room[SHALLOW] = {first};
+  VEC(Eval *) stack = {room, 1, SHALLOW};
+  while (stack.n) {
+    Eval *top = stack.at[stack.n - 1];
     if (!run(top)) {
       top->waiting = 0;
       Eval *needed = begin_definition(b, b->needed_kind, b->needed);
-      vec_push(b->arena, stack, needed);
+      vec_push(b->arena, &stack, needed);
       continue;
     }
     if (top->kind != ENT_NONE) finish_definition(top);
     vec_push(b->arena, &b->idle, top);
-    stack->n--;
+    stack.n--;
   }
 }
 
-static void resolve_definition(Builder *b, EntKind kind, uint32_t index) {
-  Eval *room[SHALLOW];
-  EvalStack stack = {room, 0, SHALLOW};
-  Eval *ev = begin_definition(b, kind, index);
-  vec_push(b->arena, &stack, ev);
-  run_all(b, &stack);
+void resolve_definition(Builder *b, EntKind kind, uint32_t index) {
+  if (b->state[kind].at[index].progress == WAITING) run_all(b, begin_definition(b, kind, index));
 }
 
-void resolve_let(Builder *b, uint32_t index) {
-  if (b->state[ENT_LET].at[index].progress == WAITING) resolve_definition(b, ENT_LET, index);
-}
-
-void resolve_observe(Builder *b, uint32_t index) {
-  if (b->state[ENT_OBSERVE].at[index].progress == WAITING) resolve_definition(b, ENT_OBSERVE, index);
-}
-
-/* As resolve_nodes; the value may be a condition. */
 /* Reports functions within functions, deeper than memory holds their derivatives: a product for each level. */
 static int nests_too_deep(Builder *b, AstId id) {
   enum { DEEPEST = 2000 };
@@ -418,13 +406,11 @@ static int nests_too_deep(Builder *b, AstId id) {
   return 1;
 }
 
+/* As resolve_nodes; the value may be a condition. */
 static Value evaluate(Builder *b, AstId id, Context where, Name effect, Expr *nodes) {
   if (!id || nests_too_deep(b, id)) return FAILED;
-  Eval *room[SHALLOW];
-  EvalStack stack = {room, 0, SHALLOW};
   Eval *ev = begin(b, id, where, effect);
-  vec_push(b->arena, &stack, ev);
-  run_all(b, &stack);
+  run_all(b, ev);
   Value v = *value_of(ev, id); /* valid: ev is on the free list, but not reused yet */
   for (AstId i = ev->first; nodes && i <= id; i++) nodes[i - ev->first] = value_of(ev, i)->n ? 0 : value_of(ev, i)->e;
   if (!v.e) report_missing_message(b, id);

@@ -15,7 +15,6 @@ static int is_coordinate(const Model *m, const Symbol *s) {
 Value action_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   Model *m = b->m;
-  if (!arity_is(ev, x, 1)) return FAILED;
   const Value *v = value_of(ev, x->args);
   if (!v->e) return FAILED;
   if (ev->where < IN_OBSERVE)

@@ -6,7 +6,6 @@
 
 static Value call_unary(Eval *ev, const AstExpr *x, ExprOp op) {
   Builder *b = ev->b;
-  if (!arity_is(ev, x, 1)) return FAILED;
   const Value *v = value_of(ev, x->args);
   if (!v->e) return FAILED;
   if (op == EX_ABS) return a_value(expr_fn(b->g, op, v->e), v->dim, v->bare);
@@ -19,7 +18,6 @@ static Value call_unary(Eval *ev, const AstExpr *x, ExprOp op) {
 
 static Value call_binary(Eval *ev, const AstExpr *x, ExprOp op) {
   Builder *b = ev->b;
-  if (!arity_is(ev, x, 2)) return FAILED;
   AstId second = ast_expr(b->ast, x->args)->next;
   const Value *v = value_of(ev, x->args), *w = value_of(ev, second);
   if (!v->e || !w->e) return FAILED;
@@ -32,7 +30,6 @@ static Value call_binary(Eval *ev, const AstExpr *x, ExprOp op) {
 /* With a constant condition the other branch was not evaluated (see enter in resolve.c). */
 static Value call_if(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
-  if (!arity_is(ev, x, 3)) return FAILED;
   AstId yes = ast_expr(b->ast, x->args)->next, no = ast_expr(b->ast, yes)->next;
   const Value *c = value_of(ev, x->args), *v = value_of(ev, yes), *w = value_of(ev, no);
   if (!c->e) return FAILED;
@@ -53,7 +50,6 @@ static Value call_if(Eval *ev, const AstExpr *x) {
 /* The arguments of dot and cross; 0, reported, unless they are two vectors of one shape. */
 static int two_vectors(Eval *ev, const AstExpr *x, const Value **v, const Value **w) {
   Builder *b = ev->b;
-  if (!arity_is(ev, x, 2)) return 0;
   AstId second = ast_expr(b->ast, x->args)->next;
   *v = value_of(ev, x->args);
   *w = value_of(ev, second);
@@ -95,7 +91,6 @@ static Value call_cross(Eval *ev, const AstExpr *x) {
 
 static Value call_norm(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
-  if (!arity_is(ev, x, 1)) return FAILED;
   const Value *v = value_of(ev, x->args);
   if (!v->e) return FAILED;
   if (v->n == ROTATION) return refuse_rotation(b, ast_expr(b->ast, x->args)->span, ast_short(b, x->args), TURN_NUMBER);
@@ -127,7 +122,6 @@ static void warn_no_rate(Eval *ev, const AstExpr *x, const Value *derivative) {
 /* d(expr, name): a partial derivative. */
 static Value call_d(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
-  if (!arity_is(ev, x, 2)) return FAILED;
   AstId by = ast_expr(b->ast, x->args)->next;
   const Value *v = value_of(ev, x->args), *w = value_of(ev, by);
   if (!v->e || !w->e) return FAILED;
@@ -151,28 +145,29 @@ static Value call_d(Eval *ev, const AstExpr *x) {
 }
 
 static Value call_sqrt(Eval *ev, const AstExpr *x) {
-  if (!arity_is(ev, x, 1) || !value_of(ev, x->args)->e) return FAILED;
   const Value *v = value_of(ev, x->args);
+  if (!v->e) return FAILED;
   return a_value(expr_sqrt(ev->b->g, v->e), dim_pow(ev->b->dims, v->dim, num_ratio(1, 2)), v->bare);
 }
 
 static Value call_pow(Eval *ev, const AstExpr *x) {
-  return arity_is(ev, x, 2) ? power_value(ev, x, x->args, ast_expr(ev->b->ast, x->args)->next) : FAILED;
+  return power_value(ev, x, x->args, ast_expr(ev->b->ast, x->args)->next);
 }
 
 static const struct {
   const char *name;
-  Value (*value)(Eval *ev, const AstExpr *x); /* NULL: the operation `op` of one number, or of two */
+  Value (*value)(Eval *ev, const AstExpr *x); /* NULL: the operation `op` of its numbers */
   ExprOp op;
+  uint32_t arguments;
   int takes_vectors; /* vectors or rotations */
 } functions[] = {
-#define ROW(OP, name, ...) {#name, NULL, EX_##OP, 0},
-    FUNCTIONS(ROW){"abs", NULL, EX_ABS, 0}, {"sign", NULL, EX_SIGN, 0}, {"floor", NULL, EX_FLOOR, 0},
-    {"atan2", NULL, EX_ATAN2, 0}, {"hypot", NULL, EX_HYPOT, 0}, {"min", NULL, EX_MIN, 0}, {"max", NULL, EX_MAX, 0},
-    {"sqrt", call_sqrt, 0, 0}, {"pow", call_pow, 0, 0}, {"if", call_if, 0, 1}, {"d", call_d, 0, 1},
-    {"dot", call_dot, 0, 1}, {"cross", call_cross, 0, 1}, {"norm", call_norm, 0, 1}, {"lambda", multiplier_value, 0, 1},
-    {"omega", omega_value, 0, 1}, {"turn", turn_value, 0, 1}, {"transpose", transpose_value, 0, 1},
-    {"action", action_value, 0, 1},
+#define ROW(OP, name, ...) {#name, NULL, EX_##OP, 1, 0},
+    FUNCTIONS(ROW){"abs", NULL, EX_ABS, 1, 0}, {"sign", NULL, EX_SIGN, 1, 0}, {"floor", NULL, EX_FLOOR, 1, 0},
+    {"atan2", NULL, EX_ATAN2, 2, 0}, {"hypot", NULL, EX_HYPOT, 2, 0}, {"min", NULL, EX_MIN, 2, 0},
+    {"max", NULL, EX_MAX, 2, 0}, {"sqrt", call_sqrt, 0, 1, 0}, {"pow", call_pow, 0, 2, 0}, {"if", call_if, 0, 3, 1},
+    {"d", call_d, 0, 2, 1}, {"dot", call_dot, 0, 2, 1}, {"cross", call_cross, 0, 2, 1}, {"norm", call_norm, 0, 1, 1},
+    {"lambda", multiplier_value, 0, 1, 1}, {"omega", omega_value, 0, 1, 1}, {"turn", turn_value, 0, 2, 1},
+    {"transpose", transpose_value, 0, 1, 1}, {"action", action_value, 0, 1, 1},
 };
 
 enum { BUILT_IN = sizeof functions / sizeof *functions };
@@ -182,7 +177,6 @@ const char *function_name(size_t i) {
   static const char *const composed[] = {COMPOSED(NAME) NULL};
   return i < BUILT_IN ? functions[i].name : composed[i - BUILT_IN];
 }
-
 
 int function_index(const char *name) {
   for (size_t i = 0; i < BUILT_IN; i++)
@@ -198,8 +192,7 @@ int call_takes_vectors(const Eval *ev, const AstExpr *x) {
 
 /* The coordinate, state or let in `th(0)`, which the parser takes for a call; or NULL. */
 static const Entity *called_motion(const Eval *ev, const AstExpr *x) {
-  int ambiguous;
-  const Entity *e = scope_find(&ev->b->scope, x->name, ev->effect, &ambiguous);
+  const Entity *e = scope_find(&ev->b->scope, x->name, ev->effect, NULL);
   int moves = e && (e->kind == ENT_COORD || e->kind == ENT_STATE || e->kind == ENT_LET);
   return moves && ast_list_length(ev->b->ast, x->args) == 1 ? e : NULL;
 }
@@ -222,8 +215,7 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
   for (uint32_t i = 0; i < OF_RUNS && b->is_measuring; i++) known[n++] = of_runs[i];
   for (uint32_t i = 0; i < b->scope.all.n; i++)
     if (b->scope.all.at[i].kind == ENT_FUNCTION) known[n++] = b->scope.all.at[i].name;
-  int ambiguous;
-  const Entity *e = scope_find(&b->scope, x->name, ev->effect, &ambiguous);
+  const Entity *e = scope_find(&b->scope, x->name, ev->effect, NULL);
   if (called_motion(ev, x) && ast_expr(b->ast, x->args)->kind == AST_NUM &&
       num_is_zero(ast_expr(b->ast, x->args)->number)) {
     report_start(b, x->span);
@@ -264,6 +256,7 @@ Value call_value(Eval *ev, const AstExpr *x) {
   if (call_is_exact(ev, x->name)) return exact_value(ev, x);
   int i = function_index(x->name);
   if (i < 0) return unknown_function(ev, x);
+  if (!arity_is(ev, x, functions[i].arguments)) return FAILED;
   if (functions[i].value) return functions[i].value(ev, x);
-  return (functions[i].op >= EX_ATAN2 ? call_binary : call_unary)(ev, x, functions[i].op);
+  return (functions[i].arguments == 2 ? call_binary : call_unary)(ev, x, functions[i].op);
 }

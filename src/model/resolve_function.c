@@ -147,8 +147,7 @@ void declare_composed(Builder *b) {
     const AstExpr *x = ast_expr(b->ast, id);
     if (x->kind != AST_CALL) continue;
     for (const AstStmt *s = first; s; s = s->next) {
-      int ambiguous;
-      if (s->name != x->name || scope_find(&b->scope, s->name, NULL, &ambiguous)) continue;
+      if (s->name != x->name || entity_named(b, s->name)) continue;
       if (declared_in_use(b, s->name, NULL)) continue;
       Entity f = {.kind = ENT_FUNCTION, .index = b->functions.n, .name = s->name, .span = s->name_span};
       vec_push(b->arena, &b->scope.behind, f);

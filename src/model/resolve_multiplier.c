@@ -59,8 +59,7 @@ static Value multipliers_of(const Builder *b, const Entity *e) {
   Value v = {.n = e->parts, .dim = b->dim_of.at[b->m->constraints.at[e->index].multiplier]};
   for (uint32_t k = 0; k < component_count(&v); k++)
     v.at[k] = expr_symbol(b->g, b->m->constraints.at[e->index + k].multiplier)->node;
-  for (uint32_t i = 0; i < b->m->contacts.n; i++) {
-    const Contact *c = &b->m->contacts.at[i];
+  vec_each(const Contact, c, b->m->contacts) {
     uint32_t k = c->constraint - e->index;
     if (c->is_tangent && c->constraint >= e->index && k < component_count(&v))
       v.at[k] = expr_add(b->g, v.at[k], expr_symbol(b->g, c->force)->node);
@@ -70,15 +69,13 @@ static Value multipliers_of(const Builder *b, const Entity *e) {
 
 Value multiplier_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
-  if (!arity_is(ev, x, 1)) return FAILED;
   if (ev->where < IN_OBSERVE && !b->in_friction)
     return refuse(
         b, x->span,
         "multipliers follow from the equations of motion, and cannot stand in them" HELP
-        "`lambda(NAME)` may stand in `observe`, `output` and `expect`, and alone in `constraint ... while "
-        "lambda(NAME) > 0`; "
-        "friction that follows it is `friction NAME on s: mu*abs(lambda(rail))`, or a guide, `guide rail: y = "
-        "0, friction = mu`");
+        "`lambda(NAME)` may stand in `observe`, `output` and `expect`, and alone in `constraint ... while lambda(NAME) "
+        "> 0`; friction that follows it is `friction NAME on s: mu*abs(lambda(rail))`, or a guide, `guide rail: y = 0, "
+        "friction = mu`");
   Span span = ast_expr(b->ast, x->args)->span;
   uint32_t errors = b->diags->errors;
   Name owner = NULL, name = named_constraint(ev, x->args, &owner);

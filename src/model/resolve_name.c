@@ -63,13 +63,6 @@ static Context least_context(EntKind kind) {
   return IN_DYNAMICS;
 }
 
-static SymId symbol_of(const Model *m, EntKind kind, uint32_t index) {
-  if (kind == ENT_COORD) return m->coords.at[index].q;
-  if (kind == ENT_STATE) return m->states.at[index].z;
-  if (kind == ENT_PARAM) return m->params.at[index].sym;
-  return m->inputs.at[index].sym;
-}
-
 static int moves(const Symbol *s, const void *found) {
   if (s->kind == SYM_PARAM || s->kind == SYM_CONST) return 0;
   **(Name *const *)found = s->name;
@@ -97,8 +90,8 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
       Value v = {.n = e->parts};
       uint32_t i = e->index + member_offset(e, at);
       for (uint32_t k = 0; k < component_count(&v); k++)
-        v.at[k] = expr_symbol(b->g, symbol_of(b->m, e->kind, i + k))->node;
-      v.dim = b->dim_of.at[symbol_of(b->m, e->kind, i)];
+        v.at[k] = expr_symbol(b->g, entity_symbol(b->m, e->kind, 0, i + k))->node;
+      v.dim = b->dim_of.at[entity_symbol(b->m, e->kind, 0, i)];
       v.unit = entity_unit(b, e)->text;
       return v;
     }
@@ -169,7 +162,7 @@ static Value momentum_value(const Eval *ev, const Entity *e, const int64_t *at) 
   uint32_t i = e->index + member_offset(e, at);
   Value r = {.n = e->parts, .domain = domain_of_derivative(b, &(Value){.e = b->m->lagrangian})};
   for (uint32_t k = 0; k < component_count(&r); k++) {
-    SymId v = e->kind == ENT_STATE ? b->m->states.at[i + k].rate : b->m->coords.at[i + k].v;
+    SymId v = entity_symbol(b->m, e->kind, 1, i + k);
     r.at[k] = expr_diff(b->g, b->m->lagrangian, v);
     r.dim = dim_div(b->dims, b->energy, b->dim_of.at[v]);
   }
@@ -202,9 +195,8 @@ Value name_value(Eval *ev, const AstExpr *x) {
     if (ev->where >= IN_INPUT) return a_value(expr_symbol(b->g, b->m->time)->node, b->dim_of.at[b->m->time], 0);
     return refuse(b, x->span, "the time `t` may not be used here" HELP "%s", place_text(ev->where));
   }
-  int ambiguous;
   Value v;
-  if (!scope_find(&b->scope, x->name, ev->effect, &ambiguous) && builtin_quantity(ev, x->name, &v)) return v;
+  if (!scope_find(&b->scope, x->name, ev->effect, NULL) && builtin_quantity(ev, x->name, &v)) return v;
   const Entity *q = momentum_of(ev, x->name);
   if (q && !q->ndims) return momentum_value(ev, q, NULL);
   const Entity *e = q ? q : resolve_name(b, x->name, x->span, ev->effect, NULL);
@@ -287,9 +279,8 @@ Value index_value(Eval *ev, const AstExpr *x) {
     Name owner = ast_expr(b->ast, of->a)->name;
     e = scope_own(&b->scope, of->name, owner);
     if (!e) report_no_member(b, of->span, owner, of->name);
-  } else if (of->kind != AST_ERROR) {
+  } else if (of->kind != AST_ERROR)
     diag_error(b->diags, x->span, "an index stands directly behind the name of a family");
-  }
   return e ? indexed_value(ev, e, x, 0) : FAILED;
 }
 
@@ -323,8 +314,7 @@ Value member_value(Eval *ev, const AstExpr *x) {
   if (left->kind != AST_NAME) return component(ev, x, *value_of(ev, x->a));
   const Entity *e = scope_own(&b->scope, x->name, left->name);
   if (e) return whole_value(ev, e, x->span);
-  int ambiguous;
-  if (scope_find(&b->scope, left->name, ev->effect, &ambiguous) || momentum_of(ev, left->name) ||
+  if (scope_find(&b->scope, left->name, ev->effect, NULL) || momentum_of(ev, left->name) ||
       find_index(ev, left->name) || function_argument(b, ev->function, left->name)) {
     Value v = name_value(ev, left);
     return ev->waiting ? FAILED : component(ev, x, v);
@@ -335,11 +325,10 @@ Value member_value(Eval *ev, const AstExpr *x) {
 
 Value resolve_member(Builder *b, const Entity *e, const int64_t *at, uint32_t primes, Span span, Context where) {
   Eval ev = {.b = b, .where = where, .in_statement = 1};
-  const Entity *member = e;
-  if (e->ndims && (e->kind == ENT_LET || e->kind == ENT_OBSERVE)) member = find_member(b->ast, &b->members, e, at);
+  int defined = e->kind == ENT_LET || e->kind == ENT_OBSERVE;
+  const Entity *member = e->ndims && defined ? find_member(b->ast, &b->members, e, at) : e;
   if (!member) return FAILED;
-  if (member->kind == ENT_LET) resolve_let(b, member->index);
-  if (member->kind == ENT_OBSERVE) resolve_observe(b, member->index);
+  if (defined) resolve_definition(b, member->kind, member->index);
   Value v = entity_value(&ev, member, at, span);
   if (v.n == ROTATION && primes) return refuse_rotation(b, span, e->name, TURN_PRIME);
   for (; v.e && primes; primes--) v = time_derivative(b, v, span, where);

@@ -19,8 +19,7 @@ static const Expr *time_seeds(Builder *b) {
   b->rates = expr_map(b->arena);
   const Model *m = b->m;
   model_seed_time(m, seed);
-  for (uint32_t i = 0; i < m->coords.n; i++) {
-    const Coord *c = &m->coords.at[i];
+  vec_each(const Coord, c, m->coords) {
     seed[c->q] = expr_symbol(b->g, c->v)->node;
     seed[c->v] = expr_symbol(b->g, c->a)->node;
   }

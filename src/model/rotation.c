@@ -97,7 +97,6 @@ Value torque_force(Builder *b, const Value *q, const Value *torque) {
 /* The only argument, which must be a rotation; NULL, reported, if not. */
 static const Value *rotation_argument(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
-  if (!arity_is(ev, x, 1)) return NULL;
   const Value *v = value_of(ev, x->args);
   if (!v->e) return NULL;
   if (v->n == ROTATION) return v;
@@ -131,7 +130,6 @@ Value transpose_value(Eval *ev, const AstExpr *x) {
 Value turn_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   ExprGraph *g = b->g;
-  if (!arity_is(ev, x, 2)) return FAILED;
   AstId angle = ast_expr(b->ast, x->args)->next;
   const Value *n = value_of(ev, x->args), *a = value_of(ev, angle);
   if (!n->e || !a->e) return FAILED;

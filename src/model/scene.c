@@ -1,6 +1,7 @@
 /* Scenes: selection of the active statements, inheritance by `like`, and the settings of a run: values, start, span,
  * tolerance, outputs, monitors. Later statements override earlier ones, except monitors, which accumulate. */
 
+#include "base/words.h"
 #include "model/builder.h"
 #include "model/effect.h"
 
@@ -148,16 +149,11 @@ static const Entity *find_settable(Builder *b, AstId id, Name effect) {
 
 /* Reports `span = 20` where no parameter is called span: the statement `span 20` was meant. */
 static int advise_statement(Builder *b, const AstStmt *st) {
-  static const char *const words[] = {"span", "tolerance", "method", "use", "like"};
   const AstExpr *l = ast_expr(b->ast, st->lhs);
   if (l->kind != AST_NAME || declared_in_use(b, l->name, NULL)) return 0;
-  for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-    if (strcmp(l->name, words[i]) == 0) {
-      diag_error(b->diags, st->span, "`%s` takes no `=`" HELP "write `%s %s`", words[i], words[i],
-                 ast_short(b, st->rhs));
-      return 1;
-    }
-  return 0;
+  if (!has_word("span tolerance method use like", l->name)) return 0;
+  diag_error(b->diags, st->span, "`%s` takes no `=`" HELP "write `%s %s`", l->name, l->name, ast_short(b, st->rhs));
+  return 1;
 }
 
 typedef struct {
@@ -268,8 +264,7 @@ static void default_outputs(Builder *b) {
   m->scene.outputs.cap = 2 * m->coords.n + m->states.n + 1;
   m->scene.outputs.at = ARENA_ARRAY(b->arena, Output, m->scene.outputs.cap);
   for (int velocities = 0; velocities < 2; velocities++)
-    for (uint32_t i = 0; i < m->coords.n; i++) {
-      const Coord *c = &m->coords.at[i];
+    vec_each(const Coord, c, m->coords) {
       const Symbol *s = expr_symbol(b->g, velocities ? c->v : c->q);
       Output o = {.name = s->name,
                   .span = c->span,
@@ -277,8 +272,7 @@ static void default_outputs(Builder *b) {
                   .value = s->node};
       push_output(b, &o);
     }
-  for (uint32_t i = 0; i < m->states.n; i++) {
-    const State *z = &m->states.at[i];
+  vec_each(const State, z, m->states) {
     Output o = {.name = z->name, .span = z->span, .unit = z->unit, .value = expr_symbol(b->g, z->z)->node};
     push_output(b, &o);
   }
@@ -294,7 +288,6 @@ static int gives_value(const AstStmt *st) {
 
 /* The effect, in use or not, that declares the target of an assignment; NULL: the model itself. */
 static Name effect_given(Builder *b, const AstStmt *st) {
-  int ambiguous;
   Target p = read_target(b, st->lhs);
   const AstExpr *x = ast_expr(b->ast, p.stem);
   if (x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME) {
@@ -302,7 +295,7 @@ static Name effect_given(Builder *b, const AstStmt *st) {
     return effect_declares(find_named(b->ast, STMT_EFFECT, owner), x->name) ? owner : NULL;
   }
   if (x->kind != AST_NAME) return NULL;
-  const Entity *e = scope_find(&b->scope, x->name, NULL, &ambiguous);
+  const Entity *e = entity_named(b, x->name);
   if (e) return e->effect;
   const AstStmt *effect = declaring_effect(b, x->name);
   return effect ? effect->name : NULL;
@@ -363,30 +356,22 @@ static void each_effective(Builder *b, void (*apply)(Builder *b, const AstStmt *
     }
 }
 
-/* Monitors accumulate along the chain, and add outputs; `monitor none` drops earlier ones. */
-static void set_monitors(Builder *b) {
-  const AstStmt *none = last_of(b, is_monitor_none);
+/* Monitors and measures accumulate along the chain, and may add outputs; `monitor none` drops earlier monitors. */
+static void accumulate(Builder *b, AstStmtKind kind, void (*apply)(Builder *b, const AstStmt *st)) {
+  const AstStmt *none = kind == STMT_MONITOR ? last_of(b, is_monitor_none) : NULL;
   int before = none != NULL;
   for (const AstStmt **s = b->chain; *s; s++)
     for (const AstStmt *x = (*s)->body; x; x = x->next) {
       before &= x != none;
-      if (x->kind == STMT_MONITOR && x != none && !before) apply_in_chain(b, s, x, set_monitor);
+      if (x->kind == kind && x != none && !before) apply_in_chain(b, s, x, apply);
     }
-}
-
-/* Measures accumulate along the chain, and may add outputs. */
-static void set_measures(Builder *b) {
-  for (const AstStmt **s = b->chain; *s; s++)
-    for (const AstStmt *x = (*s)->body; x; x = x->next)
-      if (x->kind == STMT_MEASURE) apply_in_chain(b, s, x, set_measure);
 }
 
 /* Applies a value from the command line: a start, a parameter or an input. */
 static void give(Builder *b, const CommandInput *x) {
-  int ambiguous;
   AstStmt st = {.lhs = x->what, .rhs = x->value, .span = ast_expr(b->ast, x->value)->span};
   const AstExpr *name = ast_expr(b->ast, read_target(b, x->what).stem);
-  const Entity *e = name->kind == AST_NAME ? scope_find(&b->scope, name->name, NULL, &ambiguous) : NULL;
+  const Entity *e = name->kind == AST_NAME ? entity_named(b, name->name) : NULL;
   int starts = ast_expr(b->ast, x->what)->kind == AST_CALL || (e && (e->kind == ENT_COORD || e->kind == ENT_STATE));
   st.kind = starts ? STMT_START : STMT_SET;
   if (starts) set_motion(b, &st);
@@ -405,8 +390,7 @@ void scene_build(Builder *b, const ModelChoice *choice) {
   b->is_giving = 0;
   complete_rotation_starts(b);
   if (!sc->outputs.n) default_outputs(b);
-  if (!b->is_variant) set_monitors(b);
-  if (!b->is_variant) set_measures(b);
+  if (!b->is_variant) accumulate(b, STMT_MONITOR, set_monitor), accumulate(b, STMT_MEASURE, set_measure);
   for (uint32_t i = 0, before = b->diags->errors; i < choice->nextra_outputs; i++) { /* before: the last output */
     const CommandOutput *o = &choice->asked[i];
     uint32_t errors = b->diags->errors;

@@ -21,12 +21,12 @@ const Entity *scope_own(const Scope *s, Name name, Name effect) { return newest(
 
 const Entity *scope_find(const Scope *s, Name name, Name effect, int *ambiguous) {
   uint32_t n;
-  *ambiguous = 0;
+  if (ambiguous) *ambiguous = 0;
   const Entity *own = effect ? scope_own(s, name, effect) : NULL;
   if (!own) own = scope_own(s, name, NULL);
   if (own) return own;
   const Entity *found = newest(s, name, NULL, 1, &n);
-  *ambiguous = n > 1;
+  if (ambiguous) *ambiguous = n > 1;
   for (uint32_t i = 0; !found && i < s->behind.n; i++)
     if (s->behind.at[i].name == name) return &s->behind.at[i];
   return found;

@@ -36,8 +36,8 @@ typedef struct {
 /* The entity that `effect` (NULL: the model itself) declares as `name`, or NULL. */
 const Entity *scope_own(const Scope *s, Name name, Name effect);
 
-/* The entity that `name` means inside `effect` (NULL: outside of effects), or NULL. *ambiguous: neither the effect
- * nor the model declares it, and several effects in use do. */
+/* The entity that `name` means inside `effect` (NULL: outside of effects), or NULL. *ambiguous, unless NULL: neither
+ * the effect nor the model declares it, and several effects in use do. */
 const Entity *scope_find(const Scope *s, Name name, Name effect, int *ambiguous);
 
 void scope_add(Scope *s, Entity e);

@@ -22,8 +22,7 @@ int arity_is(Eval *ev, const AstExpr *x, uint32_t want) {
 }
 
 const Entity *own_function(const Eval *ev, const AstExpr *x) {
-  int ambiguous;
-  const Entity *e = scope_find(&ev->b->scope, x->name, ev->effect, &ambiguous);
+  const Entity *e = scope_find(&ev->b->scope, x->name, ev->effect, NULL);
   return e && e->kind == ENT_FUNCTION ? e : NULL;
 }
 

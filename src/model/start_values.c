@@ -11,11 +11,6 @@ typedef struct {
   int guess, rotates;
 } StartOf;
 
-static SymId start_target(const Builder *b, const StartOf *of, uint32_t i) {
-  if (of->kind == ENT_STATE) return b->m->states.at[i].z;
-  return of->velocity ? b->m->coords.at[i].v : b->m->coords.at[i].q;
-}
-
 /* Unit of bare numbers: the coordinate's, per second for a velocity. */
 static const Unit *start_unit(Builder *b, uint32_t i, void *data) {
   StartOf *of = data;
@@ -28,7 +23,7 @@ static void give_start(Builder *b, uint32_t i, Expr value, Span span, void *data
   (void)span;
   Scene *sc = &b->m->scene;
   const StartOf *of = data;
-  SymId target = start_target(b, of, i);
+  SymId target = entity_symbol(b->m, of->kind, of->velocity, i);
   if (!b->start_index) b->start_index = ARENA_ARRAY(b->arena, uint32_t, expr_symbol_count(b->g) + 1);
   if (b->start_index[target]) {
     sc->starts.at[b->start_index[target] - 1].value = value;
@@ -76,8 +71,7 @@ SymId model_start_target(const Model *m, const FamilyStart *f, int64_t i, int64_
 void model_eval_starts(const Model *m, long double *symbols) {
   const Scene *sc = &m->scene;
   long double y[4];
-  for (uint32_t k = 0; k < sc->family_starts.n; k++) {
-    const FamilyStart *f = &sc->family_starts.at[k];
+  vec_each(const FamilyStart, f, sc->family_starts) {
     const FamilyValue *x = &f->of;
     EvalTape *tape = eval_tape(m->g, x->value, x->n);
     for (int64_t t = 0; t < x->range.rows * x->range.turns; t++) {
@@ -96,7 +90,7 @@ void model_eval_starts(const Model *m, long double *symbols) {
 static void give_closed_form(Builder *b, uint32_t i, Expr value, Span span, void *data) {
   const StartOf *of = data;
   int periodic = of->kind == ENT_STATE ? b->m->states.at[i].periodic : !of->velocity && b->m->coords.at[i].periodic;
-  set_closed_form(b, start_target(b, of, i), start_unit(b, i, data), periodic, value, span);
+  set_closed_form(b, entity_symbol(b->m, of->kind, of->velocity, i), start_unit(b, i, data), periodic, value, span);
 }
 
 static void give_spin(Builder *b, const AstStmt *st);
@@ -183,10 +177,10 @@ static const Entity *spin_entity(Builder *b, AstId call, Name effect, Target *p)
   AstId arg = x->args;
   *p = read_target(b, arg);
   const AstExpr *stem = ast_expr(b->ast, p->stem);
-  int ambiguous, plain = strcmp(x->name, "omega") == 0 && !p->wrong && !p->primes && p->part < 0;
+  int plain = strcmp(x->name, "omega") == 0 && !p->wrong && !p->primes && p->part < 0;
   const Entity *e = NULL;
   if (plain && stem->kind == AST_MEMBER) e = scope_own(&b->scope, stem->name, ast_expr(b->ast, stem->a)->name);
-  else if (plain) e = scope_find(&b->scope, stem->name, effect, &ambiguous);
+  else if (plain) e = scope_find(&b->scope, stem->name, effect, NULL);
   if (e && e->kind == ENT_COORD && e->parts == ROTATION) return e;
   diag_error(b->diags, x->span, "`%s` is not the angular velocity of a rotation coordinate", ast_short(b, call));
   diag_help(b->diags, "`omega(R) = (a, b, c)` gives the angular velocity of `coord R: rotation`, in its own frame");

@@ -18,8 +18,7 @@ static Name full_name(Builder *b, Name name, Name effect) {
 /* Name of the group parameter; NULL, reported, if there are two, or the model declares the name. */
 static Name parameter_name(Builder *b, const AstStmt *st, Name effect) {
   const AstExpr *s = ast_expr(b->ast, st->args);
-  int ambiguous;
-  const Entity *other = scope_find(&b->scope, s->name, effect, &ambiguous);
+  const Entity *other = scope_find(&b->scope, s->name, effect, NULL);
   if (s->next) {
     diag_error(b->diags, ast_expr(b->ast, s->next)->span,
                "a symmetry has one parameter" HELP "write two symmetries: each has a charge of its own");
@@ -204,7 +203,7 @@ static const Unit *unit_of_target(Builder *b, uint32_t scalar, void *data) {
 
 static void give_target(Builder *b, uint32_t scalar, Expr value, Span span, void *data) {
   const Mapping *p = data;
-  add_move(p, p->kind == ENT_STATE ? b->m->states.at[scalar].z : b->m->coords.at[scalar].q, value, span);
+  add_move(p, entity_symbol(b->m, p->kind, 0, scalar), value, span);
 }
 
 /* Adds the map of time, `t -> ...`. */

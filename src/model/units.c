@@ -121,21 +121,14 @@ static Num power_of_ten(int n) {
 
 /* Common other spellings of units, for messages. */
 static const char *const spellings[][2] = {
-    {"meter", "m"},   {"metre", "m"},     {"meters", "m"},     {"metres", "m"},    {"gram", "g"},
-    {"grams", "g"},   {"kilogram", "kg"}, {"kilograms", "kg"}, {"kgs", "kg"},      {"Kg", "kg"},
-    {"KG", "kg"},     {"kilo", "kg"},     {"sec", "s"},        {"secs", "s"},      {"second", "s"},
-    {"seconds", "s"}, {"Sec", "s"},       {"minute", "min"},   {"minutes", "min"}, {"hour", "h"},
-    {"hours", "h"},   {"hr", "h"},        {"days", "d"},       {"year", "yr"},     {"years", "yr"},
-    {"a", "yr"},      {"degree", "deg"},  {"degrees", "deg"},  {"radian", "rad"},  {"radians", "rad"},
-    {"turn", "rev"},  {"rpm", "rev/min"}, {"Newton", "N"},     {"newton", "N"},    {"Joule", "J"},
-    {"joule", "J"},   {"Watt", "W"},      {"watt", "W"},       {"Volt", "V"},      {"volt", "V"},
-    {"Ampere", "A"},  {"ampere", "A"},    {"amp", "A"},        {"Kelvin", "K"},    {"kelvin", "K"},
-    {"Ohm", "ohm"},   {"Hertz", "Hz"},    {"hertz", "Hz"},     {"Pascal", "Pa"},   {"Coulomb", "C"},
-    {"Farad", "F"},   {"Henry", "H"},     {"Tesla", "T"},      {"AU", "au"},       {"ev", "eV"},
-    {"us", "µs"},     {"um", "µm"},       {"liter", "L"},      {"litre", "L"},     {"l", "L"},
-    {"amu", "u"},     {"Da", "u"},        {"foot", "ft"},      {"feet", "ft"},     {"lbs", "lb"},
-    {"pound", "lb"},  {"pounds", "lb"},   {"parsec", "pc"},    {"lyr", "ly"},      {"M_sun", "Msun"},
-    {"msun", "Msun"},
+    {"meter metre meters metres", "m"}, {"gram grams", "g"}, {"kilogram kilograms kgs Kg KG kilo", "kg"},
+    {"sec secs second seconds Sec", "s"}, {"minute minutes", "min"}, {"hour hours hr", "h"}, {"days", "d"},
+    {"year years a", "yr"}, {"degree degrees", "deg"}, {"radian radians", "rad"}, {"turn", "rev"}, {"rpm", "rev/min"},
+    {"Newton newton", "N"}, {"Joule joule", "J"}, {"Watt watt", "W"}, {"Volt volt", "V"}, {"Ampere ampere amp", "A"},
+    {"Kelvin kelvin", "K"}, {"Ohm", "ohm"}, {"Hertz hertz", "Hz"}, {"Pascal", "Pa"}, {"Coulomb", "C"}, {"Farad", "F"},
+    {"Henry", "H"}, {"Tesla", "T"}, {"AU", "au"}, {"ev", "eV"}, {"us", "µs"}, {"um", "µm"}, {"liter litre l", "L"},
+    {"amu Da", "u"}, {"foot feet", "ft"}, {"lbs pound pounds", "lb"}, {"parsec", "pc"}, {"lyr", "ly"},
+    {"M_sun msun", "Msun"},
 };
 enum { N_SPELLINGS = sizeof spellings / sizeof *spellings };
 
@@ -167,7 +160,7 @@ static int report_product(const AstUnitFactor *f, Diags *diags) {
 static void report_unknown(const AstUnitFactor *f, Diags *diags) {
   diag_error(diags, f->span, "unknown unit `%s`", f->name);
   for (int i = 0; i < N_SPELLINGS; i++)
-    if (strcmp(f->name, spellings[i][0]) == 0) {
+    if (has_word(spellings[i][0], f->name)) {
       diag_help(diags, "write `%s`", spellings[i][1]);
       return;
     }

@@ -14,7 +14,7 @@ static ActionCurve curve_of(const PhaseSpace *s, uint32_t i) {
   const Model *m = s->e->m;
   ExprGraph *g = s->e->g;
   uint32_t n = m->coords.n;
-  ActionCurve c = {.name = expr_symbol(g, s->q[i])->name, .periodic = pair_is_periodic(s, i)};
+  ActionCurve c = {.name = expr_symbol(g, s->q[i])->name, .periodic = model_is_periodic(s->e->m, s->q[i])};
   Expr *velocity = ARENA_ARRAY(m->arena, Expr, s->n);
   action_roots(s, i, c.roots);
   c.coordinate = s->rate ? i : 2 * n + expr_symbol(g, s->q[i])->index;

@@ -43,11 +43,6 @@ static Real *start_state(const PhaseSpace *s) {
   return symbols;
 }
 
-int pair_is_periodic(const PhaseSpace *s, uint32_t i) {
-  const Model *m = s->e->m;
-  return s->rate ? m->coords.at[i].periodic : m->states.at[m->pairs.at[i].q].periodic;
-}
-
 void action_roots(const PhaseSpace *s, uint32_t i, Expr *roots) {
   ExprGraph *g = s->e->g;
   Expr slope = expr_diff(g, s->H, s->p[i]), bend = expr_diff(g, slope, s->p[i]), force = expr_diff(g, s->H, s->q[i]);
@@ -66,7 +61,8 @@ static void pair_action(const PhaseSpace *s, uint32_t i, const Real *start, Acti
   action_roots(s, i, roots);
   for (uint32_t k = 0; k < count; k++) c.symbols[k] = start[k];
   c.tape = eval_tape(g, roots, 4);
-  lag_action_integral x = lag_action_of_curve(point_at, &c, start[c.q], start[c.p], pair_is_periodic(s, i));
+  lag_action_integral x =
+      lag_action_of_curve(point_at, &c, start[c.q], start[c.p], model_is_periodic(s->e->m, s->q[i]));
   *out = (ActionVariable){.why_not = x.why_not,
                           .rests = x.rests, .rotates = x.rotates, .J = x.J, .omega = 2 * pi / x.time, .low = x.low,
                           .high = x.high};
@@ -76,7 +72,8 @@ static void pair_action(const PhaseSpace *s, uint32_t i, const Real *start, Acti
 
 /* NULL: a cyclic coordinate has its momentum as its action. */
 static const char *reason_against_cyclic(const PhaseSpace *s, uint32_t i) {
-  return pair_is_periodic(s, i) ? NULL : "it is cyclic, and not declared periodic: its motion does not turn";
+  return model_is_periodic(s->e->m, s->q[i]) ? NULL
+                                             : "it is cyclic, and not declared periodic: its motion does not turn";
 }
 
 static void cyclic_action(const PhaseSpace *s, uint32_t i, const Real *start, ActionVariable *out) {

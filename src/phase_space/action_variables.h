@@ -35,6 +35,5 @@ int action_variables(Eqns *e, ActionVariables *out);
 /* Of pair i of a phase space, whose H is free of definitions: */
 /* *why_not: NULL, or the reason for no action at any state */
 PairKind pair_with_action(const PhaseSpace *s, uint32_t i, const char **why_not);
-int pair_is_periodic(const PhaseSpace *s, uint32_t i);
 /* roots[4]: H, dH/dp, d2H/dp2, dH/dq */
 void action_roots(const PhaseSpace *s, uint32_t i, Expr *roots);

@@ -15,6 +15,7 @@ int file_write(const char *path, const char *text, size_t n, const char **error)
 int file_same(const char *a, const char *b) { return (void)a, (void)b, 0; }
 int stderr_is_terminal(void) { return 0; }
 const char *options_passed(const Options *o, const char *name) { return (void)o, (void)name, NULL; }
+int options_pass_flag(const Options *o, const char *name) { return (void)o, (void)name, 0; }
 unsigned fmu_wants(void) { return 0; }
 
 uintptr_t __stack_chk_guard = 0x595e9fbd;

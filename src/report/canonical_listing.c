@@ -36,12 +36,11 @@ int show_canonical(Eqns *e, const Canonical *c, PrintStyle style, StrBuf *out) {
   PhaseSpace s;
   if (!phase_space_of(e, c->span, &s)) return 0;
   const Expr *z = canonical_inverse(&s, c);
-  if (!z) {
-    diag_error(e->m->diags, c->span, "the inverse of `%s` is not found", c->name);
-    diag_help(e->m->diags, "give the old variables as functions of the new, too: `%s = ..., ...`",
-              expr_symbol(e->g, s.q[0])->name);
-    return 0;
-  }
+  if (!z)
+    return diag_error(e->m->diags, c->span,
+                      "the inverse of `%s` is not found" HELP
+                      "give the old variables as functions of the new, too: `%s = ..., ...`",
+                      c->name, expr_symbol(e->g, s.q[0])->name);
   NewHamiltonian new = canonical_hamiltonian(&s, c, z);
   text_title(&t);
   show_inverse(&t, &s, c, z);

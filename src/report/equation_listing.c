@@ -20,8 +20,7 @@ static const Expr *mass_rows(Text *t) {
   uint32_t n = e->n, *next = ARENA_ARRAY(e->m->arena, uint32_t, n + 1), begin = 0;
   Expr *rows = ARENA_ARRAY(e->m->arena, Expr, n + 1),
        *terms = ARENA_ARRAY(e->m->arena, Expr, 2 * (size_t)e->mass.n + 1);
-  for (uint32_t k = 0; k < e->mass.n; k++) {
-    const MassEntry *x = &e->mass.at[k];
+  vec_each(const MassEntry, x, e->mass) {
     next[x->row]++;
     next[x->col] += x->row != x->col;
   }
@@ -30,8 +29,7 @@ static const Expr *mass_rows(Text *t) {
     next[i] = begin;
     begin += count;
   }
-  for (uint32_t k = 0; k < e->mass.n; k++) {
-    const MassEntry *x = &e->mass.at[k];
+  vec_each(const MassEntry, x, e->mass) {
     Expr m = shown(t, x->e), a = expr_symbol(t->g, e->m->coords.at[x->col].a)->node;
     Expr b = expr_symbol(t->g, e->m->coords.at[x->row].a)->node;
     terms[next[x->row]++] = expr_mul(t->g, m, a);
@@ -77,13 +75,11 @@ static void lifted_motion(Text *t) {
   Unknowns u = unknowns(t);
   Expr *row = ARENA_ARRAY(e->m->arena, Expr, total), *rate = ARENA_ARRAY(e->m->arena, Expr, total);
   for (uint32_t i = 0; i < total; i++) row[i] = rate[i] = expr_int(t->g, 0);
-  for (uint32_t k = 0; k < s->H.n; k++) {
-    const MassEntry *x = &s->H.at[k];
+  vec_each(const MassEntry, x, s->H) {
     add_product(t, &row[x->row], x->e, u.rate[x->col]);
     if (x->row != x->col) add_product(t, &row[x->col], x->e, u.rate[x->row]);
   }
-  for (uint32_t k = 0; k < s->C.n; k++) {
-    const MassEntry *x = &s->C.at[k];
+  vec_each(const MassEntry, x, s->C) {
     add_product(t, &row[x->col], x->e, u.force[x->row]);
     add_product(t, &rate[x->row], x->e, u.rate[x->col]);
   }

@@ -6,8 +6,11 @@
 
 static const char *comma(uint32_t k) { return k ? ", " : ""; }
 
-static void put_expr(StrBuf *out, const Model *m, Expr x) {
-  sb_putc(out, '"');
+/* Before element k of a list in lines. */
+static const char *line(uint32_t k) { return k ? ",\n  " : "\n  "; }
+
+static void put_expr(StrBuf *out, const Model *m, const char *before, Expr x) {
+  sb_printf(out, "%s\"", before);
   expr_print_checked(m, x, PRINT_TEXT, out);
   sb_putc(out, '"');
 }
@@ -15,7 +18,7 @@ static void put_expr(StrBuf *out, const Model *m, Expr x) {
 /* The power; null where it is not known, or there is no charge. */
 static void put_power(StrBuf *out, const Model *m, const Noether *is) {
   if (!is->charge || is->power_unknown) sb_puts(out, "null");
-  else put_expr(out, m, is->power);
+  else put_expr(out, m, "", is->power);
 }
 
 static void put_symmetry(StrBuf *out, const NoetherReport *r, uint32_t k) {
@@ -23,53 +26,45 @@ static void put_symmetry(StrBuf *out, const NoetherReport *r, uint32_t k) {
   const FoundSymmetry *s = &r->found.all.at[k];
   Name declared = noether_declared(r, k);
   uint32_t shown = 0;
-  sb_printf(out, "{\"name\": \"%s\", \"delta\": {", s->name);
+  sb_printf(out, "%s{\"name\": \"%s\", \"delta\": {", line(k), s->name);
   for (uint32_t i = 0; i < eqns_coordinates(e); i++) {
     if (expr_is_zero(e->g, s->by.xi[i])) continue;
     sb_printf(out, "%s\"%s\": ", comma(shown++), expr_symbol(e->g, eqns_coordinate(e, i))->name);
-    put_expr(out, e->m, s->by.xi[i]);
+    put_expr(out, e->m, "", s->by.xi[i]);
   }
-  sb_puts(out, "}, \"delta_t\": ");
-  put_expr(out, e->m, s->by.tau);
-  sb_puts(out, ", \"F\": ");
-  put_expr(out, e->m, s->is.F);
-  sb_puts(out, ", \"charge\": ");
-  put_expr(out, e->m, s->is.charge);
+  put_expr(out, e->m, "}, \"delta_t\": ", s->by.tau);
+  put_expr(out, e->m, ", \"F\": ", s->is.F);
+  put_expr(out, e->m, ", \"charge\": ", s->is.charge);
   sb_printf(out, ", \"is\": \"%s\", \"power\": ", charges_drift_word(s->is.drift));
   put_power(out, e->m, &s->is);
   Conditions positive = noether_conditions(r, k);
-  for (uint32_t i = 0; i < positive.n; i++) {
-    sb_puts(out, i ? ", " : ", \"positive\": [");
-    put_expr(out, e->m, positive.at[i]);
-  }
+  for (uint32_t i = 0; i < positive.n; i++) put_expr(out, e->m, i ? ", " : ", \"positive\": [", positive.at[i]);
   if (positive.n) sb_putc(out, ']');
-  if (s->is.over_time) {
-    sb_puts(out, ", \"F_integral_of\": ");
-    put_expr(out, e->m, s->is.over_time);
-  }
+  if (s->is.over_time) put_expr(out, e->m, ", \"F_integral_of\": ", s->is.over_time);
   if (s->is.jumps) sb_puts(out, ", \"between_jumps\": true");
   if (declared) sb_printf(out, ", \"declared\": \"%s\"", declared);
   sb_putc(out, '}');
 }
 
 /* Nonzero coefficients by the number of their charge, from 1; the constant stands apart. */
-static void put_bracket(StrBuf *out, const NoetherReport *r, const Bracket *k) {
+static void put_bracket(StrBuf *out, const NoetherReport *r, uint32_t number) {
+  const Bracket *k = &r->algebra.all.at[number];
   ExprGraph *g = r->e->g;
   uint32_t shown = 0;
-  sb_printf(out, "{\"of\": [%u, %u], \"proved\": %s, ", k->a + 1, k->b + 1, k->proved ? "true" : "false");
+  sb_printf(out, "%s{\"of\": [%u, %u], \"proved\": %s, ", line(number), k->a + 1, k->b + 1,
+            k->proved ? "true" : "false");
   if (!k->c) {
     sb_printf(out, "\"is_combination\": %s, \"value\": ", k->is_outside ? "false" : "true");
-    put_expr(out, r->e->m, k->value);
+    put_expr(out, r->e->m, "", k->value);
     sb_putc(out, '}');
     return;
   }
-  sb_puts(out, "\"constant\": ");
-  put_expr(out, r->e->m, k->constant);
+  put_expr(out, r->e->m, "\"constant\": ", k->constant);
   sb_puts(out, ", \"charges\": {");
   for (uint32_t i = 0; i < r->algebra.n; i++) {
     if (expr_is_zero(g, k->c[i])) continue;
     sb_printf(out, "%s\"%u\": ", comma(shown++), i + 1);
-    put_expr(out, r->e->m, k->c[i]);
+    put_expr(out, r->e->m, "", k->c[i]);
   }
   sb_puts(out, "}}");
 }
@@ -92,9 +87,10 @@ static void put_scaling(StrBuf *out, const NoetherReport *r) {
   sb_puts(out, "\"}");
 }
 
-static void put_effect(StrBuf *out, const NoetherReport *r, const EffectVerdict *v) {
+static void put_effect(StrBuf *out, const NoetherReport *r, uint32_t number) {
+  const EffectVerdict *v = &r->effects.at[number];
   const char *note = noether_note_on_impacts(v->e->m);
-  sb_printf(out, "{\"effect\": \"%s\", \"note\": \"%s\", \"powers\": [", v->effect, note ? note : "");
+  sb_printf(out, "%s{\"effect\": \"%s\", \"note\": \"%s\", \"powers\": [", line(number), v->effect, note ? note : "");
   for (uint32_t k = 0; k < r->found.all.n; k++) {
     sb_puts(out, comma(k));
     put_power(out, v->e->m, &v->is[k]);
@@ -113,8 +109,8 @@ static void put_polynomial_charges(StrBuf *out, const NoetherReport *r) {
   for (uint32_t k = 0; k < f->ansatz.n; k++) sb_printf(out, "%s\"%s\"", comma(k), f->ansatz.at[k]);
   sb_puts(out, "], \"charges\": [");
   for (uint32_t k = 0; k < f->all.n; k++) {
-    sb_printf(out, "%s{\"degree\": %u, \"charge\": ", k ? ",\n  " : "\n  ", f->all.at[k].degree);
-    put_expr(out, r->e->m, f->all.at[k].charge);
+    sb_printf(out, "%s{\"degree\": %u, \"charge\": ", line(k), f->all.at[k].degree);
+    put_expr(out, r->e->m, "", f->all.at[k].charge);
     sb_putc(out, '}');
   }
   sb_puts(out, "]}");
@@ -135,8 +131,7 @@ static void put_involution(StrBuf *out, const NoetherReport *r) {
     if (x->kind == INVOLUTION_SQUARES)
       sb_printf(out, "\"squares_of\": [%u, %u, %u], ", x->of[0] + 1, x->of[1] + 1, x->of[2] + 1);
     if (x->name) sb_printf(out, "\"declared\": \"%s\", ", x->name);
-    sb_puts(out, "\"charge\": ");
-    put_expr(out, r->e->m, x->charge);
+    put_expr(out, r->e->m, "\"charge\": ", x->charge);
     sb_putc(out, '}');
   }
   sb_puts(out, "]}");
@@ -154,24 +149,15 @@ void show_noether_json(const NoetherReport *r, StrBuf *out) {
             "\"symmetries\": [",
             f->note ? f->note : "", f->ansatz, f->searched ? "true" : "false", f->unproved,
             f->galilean ? "true" : "false");
-  for (uint32_t k = 0; k < f->all.n; k++) {
-    sb_puts(out, k ? ",\n  " : "\n  ");
-    put_symmetry(out, r, k);
-  }
+  for (uint32_t k = 0; k < f->all.n; k++) put_symmetry(out, r, k);
   sb_puts(out, "],\n \"scaling\": ");
   put_scaling(out, r);
   sb_printf(out, ",\n \"brackets_known\": %s, \"brackets\": [", r->algebra.why_not ? "false" : "true");
-  for (uint32_t k = 0; k < r->algebra.all.n; k++) {
-    sb_puts(out, k ? ",\n  " : "\n  ");
-    put_bracket(out, r, &r->algebra.all.at[k]);
-  }
+  for (uint32_t k = 0; k < r->algebra.all.n; k++) put_bracket(out, r, k);
   sb_putc(out, ']');
   put_polynomial_charges(out, r);
   put_involution(out, r);
   sb_puts(out, ",\n \"effects\": [");
-  for (uint32_t k = 0; k < r->effects.n; k++) {
-    sb_puts(out, k ? ",\n  " : "\n  ");
-    put_effect(out, r, &r->effects.at[k]);
-  }
+  for (uint32_t k = 0; k < r->effects.n; k++) put_effect(out, r, k);
   sb_puts(out, "]}\n");
 }

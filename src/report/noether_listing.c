@@ -48,7 +48,11 @@ static const char *named_latex(const Page *p, uint32_t k, int dot) {
 }
 
 /* A line of prose; in LaTeX a comment. */
-static void say(Page *p, const char *words) {
+static void __attribute__((format(printf, 2, 3))) say(Page *p, const char *fmt, ...) {
+  va_list ap;
+  va_start(ap, fmt);
+  const char *words = arena_vprintf(p->text.e->m->arena, fmt, ap);
+  va_end(ap);
   sb_printf(p->text.out, "%s%s\n", text_latex(&p->text) ? "% " : "", words);
 }
 
@@ -71,7 +75,7 @@ static void put_conditions(Page *p, uint32_t k) {
     expr_print(t->g, all.at[i], PRINT_TEXT, &b);
     sb_puts(&b, " > 0");
   }
-  if (all.n) say(p, sb_text(&b));
+  if (all.n) say(p, "%s", sb_text(&b));
 }
 
 /* Changes of the coordinates and of time. */
@@ -115,20 +119,19 @@ static void symmetries(Page *p) {
   const FoundSymmetries *f = &p->r->found;
   Arena *a = p->text.e->m->arena;
   sb_putc(p->text.out, '\n');
-  say(p, arena_printf(a, "looked for: %s", f->ansatz));
+  say(p, "looked for: %s", f->ansatz);
   if (!f->searched) {
-    say(p, arena_printf(a, "not searched: %s", f->note));
+    say(p, "not searched: %s", f->note);
     return;
   }
-  say(p, f->all.n
-             ? arena_printf(a, "found: %u symmetr%s, each proved%s; %s = p.delta q - E delta t - F", f->all.n,
-                            f->all.n == 1 ? "y" : "ies", some_jump(f) ? ", some between jumps of L only" : "", p->Q)
-             : "found: none");
+  if (!f->all.n) say(p, "found: none");
+  else
+    say(p, "found: %u symmetr%s, each proved%s; %s = p.delta q - E delta t - F", f->all.n, f->all.n == 1 ? "y" : "ies",
+        some_jump(f) ? ", some between jumps of L only" : "", p->Q);
   if (f->unproved)
-    say(p, arena_printf(
-               a, "%u more direction%s of the solution space not written in closed form, or not proved: not listed",
-               f->unproved, plural(f->unproved)));
-  if (f->note) say(p, f->note);
+    say(p, "%u more direction%s of the solution space not written in closed form, or not proved: not listed",
+        f->unproved, plural(f->unproved));
+  if (f->note) say(p, "%s", f->note);
   if (f->galilean) say(p, "the ten charges of the Galilei group are among them");
   for (uint32_t k = 0; k < f->all.n; k++) symmetry(p, k);
   Expr *roots = ARENA_ARRAY(a, Expr, 3 * (size_t)f->all.n + 1);
@@ -172,7 +175,7 @@ static void scaling(Page *p) {
             " maps solutions to solutions; it multiplies the action by %s, so it is no symmetry in Noether's sense and "
             "has no charge",
             power_text(p, r->scaling.kappa));
-  say(p, sb_text(&b));
+  say(p, "%s", sb_text(&b));
 }
 
 /* --- the algebra --- */
@@ -206,7 +209,7 @@ static void algebra(Page *p) {
   if (x->n < 2) return;
   if (x->why_not) {
     sb_putc(p->text.out, '\n');
-    say(p, arena_printf(a, "no Poisson brackets: %s", x->why_not));
+    say(p, "no Poisson brackets: %s", x->why_not);
     return;
   }
   for (uint32_t k = 0; k < x->n; k++) charge[k] = charge_symbol(p, k);
@@ -219,15 +222,13 @@ static void algebra(Page *p) {
     open += !x->all.at[k].c && !x->all.at[k].is_outside;
     outside += !x->all.at[k].c && x->all.at[k].is_outside;
   }
-  if (outside)
-    say(p, arena_printf(a, "  %u of them %s no combination of these charges", outside, outside == 1 ? "is" : "are"));
+  if (outside) say(p, "  %u of them %s no combination of these charges", outside, outside == 1 ? "is" : "are");
   if (open)
-    say(p, arena_printf(a, "  %u of them %s of these charges with coefficients that were not recognised", open,
-                        open == 1 ? "is a combination" : "are combinations"));
-  const char *how = x->by_value
-                        ? arena_printf(a, "%u of %u proved, all checked at random states", pairs - x->by_value, pairs)
-                        : "all proved";
-  say(p, arena_printf(a, "  %s%s", !x->all.n ? "all Poisson brackets are 0: " : zero ? "the others are 0: " : "", how));
+    say(p, "  %u of them %s of these charges with coefficients that were not recognised", open,
+        open == 1 ? "is a combination" : "are combinations");
+  const char *rest = !x->all.n ? "all Poisson brackets are 0: " : zero ? "the others are 0: " : "";
+  if (!x->by_value) say(p, "  %sall proved", rest);
+  else say(p, "  %s%u of %u proved, all checked at random states", rest, pairs - x->by_value, pairs);
 }
 
 /* --- effects --- */
@@ -246,7 +247,7 @@ static void other_charge(Page *p, const EffectVerdict *v, Text *of, uint32_t k) 
 /* Remark on impacts or events that the effect adds to the model. */
 static void impacts(Page *p, const EffectVerdict *v) {
   const char *note = noether_note_on_impacts(v->e->m);
-  if (note && !noether_note_on_impacts(p->text.e->m)) say(p, arena_printf(v->e->m->arena, "  its %s", note));
+  if (note && !noether_note_on_impacts(p->text.e->m)) say(p, "  its %s", note);
 }
 
 static void effect(Page *p, const EffectVerdict *v) {
@@ -256,7 +257,7 @@ static void effect(Page *p, const EffectVerdict *v) {
   for (uint32_t k = 0; k < n; k++) broken += (uint32_t)is_broken(v, &v->is[k], &p->r->found.all.at[k].is);
   if (!broken) {
     sb_putc(p->text.out, '\n');
-    say(p, arena_printf(a, "effect %s breaks none of them", v->effect));
+    say(p, "effect %s breaks none of them", v->effect);
     impacts(p, v);
     return;
   }
@@ -266,7 +267,7 @@ static void effect(Page *p, const EffectVerdict *v) {
     if (!is_broken(v, is, &p->r->found.all.at[k].is)) continue;
     int last = ++shown == broken;
     if (is->charge) other_charge(p, v, &of, k);
-    if (is->charge && is->jumps) say(p, arena_printf(a, "  %s, between jumps of L only:", named(p, "", k, "")));
+    if (is->charge && is->jumps) say(p, "  %s, between jumps of L only:", named(p, "", k, ""));
     if (is->charge && !is->power_unknown)
       text_named(&of, named(p, "d", k, "/dt"), named_latex(p, k, 1), is->power, last);
     else
@@ -285,16 +286,16 @@ static void polynomial_charges(Page *p) {
   Arena *a = t->e->m->arena;
   if (!f) return;
   sb_putc(t->out, '\n');
-  for (uint32_t k = 0; k < f->ansatz.n; k++) say(p, arena_printf(a, "looked for: %s", f->ansatz.at[k]));
-  if (f->why_not) say(p, arena_printf(a, "not searched to degree %u in the momenta: %s", f->degree, f->why_not));
+  for (uint32_t k = 0; k < f->ansatz.n; k++) say(p, "looked for: %s", f->ansatz.at[k]);
+  if (f->why_not) say(p, "not searched to degree %u in the momenta: %s", f->degree, f->why_not);
   if (f->ansatz.n && f->all.n)
-    say(p, arena_printf(a, "found: %u charge%s, each proved, beside products of charges", f->all.n, plural(f->all.n)));
+    say(p, "found: %u charge%s, each proved, beside products of charges", f->all.n, plural(f->all.n));
   else if (f->ansatz.n)
     say(p, f->unproved || f->doubtful || !p->r->found.all.n ? "found: none"
                                                             : "found: none but products of the charges above");
   if (f->unproved)
-    say(p, arena_printf(a, "%u more candidate%s not written in closed form, or not proved: not listed", f->unproved,
-                        plural(f->unproved)));
+    say(p, "%u more candidate%s not written in closed form, or not proved: not listed", f->unproved,
+        plural(f->unproved));
   if (f->doubtful) say(p, "  a rank was not certain: there may be more");
   Expr *roots = ARENA_ARRAY(a, Expr, f->all.n + 1);
   for (uint32_t k = 0; k < f->all.n; k++) {
@@ -340,30 +341,28 @@ static const char *not_looked_for(const Page *p) {
 
 static void involution(Page *p) {
   const Involution *v = p->r->involution;
-  Arena *a = p->text.e->m->arena;
   if (!v) return;
   sb_putc(p->text.out, '\n');
   if (v->why_not) {
-    say(p, arena_printf(a, "no charges in involution: %s", v->why_not));
+    say(p, "no charges in involution: %s", v->why_not);
     return;
   }
-  say(p, arena_printf(a,
-                      v->all.n == v->n ? "in involution: %s%s%u of %u: Liouville-integrable"
-                                       : "in involution: %s%s%u of the %u that integrability needs",
-                      charge_names_text(p, v), v->all.n ? ": " : "", v->all.n, v->n));
+  say(p,
+      v->all.n == v->n ? "in involution: %s%s%u of %u: Liouville-integrable"
+                       : "in involution: %s%s%u of the %u that integrability needs",
+      charge_names_text(p, v), v->all.n ? ": " : "", v->all.n, v->n);
   if (v->all.n > 1) say(p, "  all their Poisson brackets are 0, proved");
-  say(p, arena_printf(a, "  %u independent charge%s in all, by the rank of gradients at random states%s",
-                      v->independent, plural(v->independent),
-                      v->all.n == v->n && v->independent > v->n
-                          ? v->independent == 2 * v->n - 1 ? ": maximally superintegrable" : ": superintegrable"
-                          : ""));
+  say(p, "  %u independent charge%s in all, by the rank of gradients at random states%s", v->independent,
+      plural(v->independent),
+      v->all.n == v->n && v->independent > v->n
+          ? v->independent == 2 * v->n - 1 ? ": maximally superintegrable" : ": superintegrable"
+          : "");
   if (v->all.n == v->n) return;
-  say(p, arena_printf(a, "  %s", not_looked_for(p)));
+  say(p, "  %s", not_looked_for(p));
   if (v->steps || v->stopped)
-    say(p, arena_printf(a, "  the search for sets ended after %u tries%s%s: there may be a larger one", v->steps,
-                        v->stopped ? ", as " : "", v->stopped ? v->stopped : ""));
-  if (v->left_out)
-    say(p, arena_printf(a, "  %u further charges were not looked at: there may be a larger set", v->left_out));
+    say(p, "  the search for sets ended after %u tries%s%s: there may be a larger one", v->steps,
+        v->stopped ? ", as " : "", v->stopped ? v->stopped : "");
+  if (v->left_out) say(p, "  %u further charges were not looked at: there may be a larger set", v->left_out);
 }
 
 /* --- the page --- */
@@ -373,7 +372,7 @@ void show_noether(const NoetherReport *r, PrintStyle style, StrBuf *out) {
   text_title(&p.text);
   text_charges(&p.text);
   sb_putc(out, '\n');
-  if (r->e->ncharges) say(&p, charges_energy_text(r->e));
+  if (r->e->ncharges) say(&p, "%s", charges_energy_text(r->e));
   show_cyclic(r->e, text_latex(&p.text) ? "% " : "", out);
   symmetries(&p);
   scaling(&p);

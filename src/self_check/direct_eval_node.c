@@ -217,9 +217,8 @@ static Ref energy_called(DirectEval *t, Name name) {
 
 /* The coordinate x of a momentum name `p_x`, or NULL. */
 static const Entity *momentum_of(const DirectEval *t, const Frame *f, Name name) {
-  int ambiguous;
-  if (strncmp(name, "p_", 2) != 0 || scope_find(&t->b->scope, name, f->effect, &ambiguous)) return NULL;
-  const Entity *e = scope_find(&t->b->scope, intern(t->b->ast->names, name + 2), f->effect, &ambiguous);
+  if (strncmp(name, "p_", 2) != 0 || scope_find(&t->b->scope, name, f->effect, NULL)) return NULL;
+  const Entity *e = scope_find(&t->b->scope, intern(t->b->ast->names, name + 2), f->effect, NULL);
   return e && (e->kind == ENT_COORD || e->kind == ENT_STATE) ? e : NULL;
 }
 
@@ -243,8 +242,7 @@ static TextValue name_node(DirectEval *t, Frame *f, Name name) {
   if (arg) return *arg;
   if (strcmp(name, "pi") == 0) return scalar(tape_pi(t->tape), 1);
   if (strcmp(name, "t") == 0) return scalar(tape_input(t->tape, INPUT_TIME, 0), 0);
-  int ambiguous;
-  const Entity *e = scope_find(&t->b->scope, name, f->effect, &ambiguous), *q = momentum_of(t, f, name);
+  const Entity *e = scope_find(&t->b->scope, name, f->effect, NULL), *q = momentum_of(t, f, name);
   if (e) return named(t, f, e, NULL);
   if (q) return q->ndims ? NOTHING : momentum(t, q, NULL);
   if (!is_one_of(name, energies)) return NOTHING;
@@ -256,9 +254,8 @@ static TextValue index_node(DirectEval *t, Frame *f, const AstExpr *x) {
   const AstExpr *of = ast_expr(t->b->ast, x->a);
   int64_t at[2] = {0};
   uint32_t n = 0;
-  int ambiguous;
   const Entity *e = NULL;
-  if (of->kind == AST_NAME) e = scope_find(&t->b->scope, of->name, f->effect, &ambiguous);
+  if (of->kind == AST_NAME) e = scope_find(&t->b->scope, of->name, f->effect, NULL);
   else if (of->kind == AST_MEMBER && ast_expr(t->b->ast, of->a)->kind == AST_NAME)
     e = scope_own(&t->b->scope, of->name, ast_expr(t->b->ast, of->a)->name);
   for (AstId i = x->args; i && n < 2; i = ast_expr(t->b->ast, i)->next, n++)
@@ -402,8 +399,7 @@ static TextValue call_node(DirectEval *t, Frame *f, const AstExpr *x) {
   static const char *const vectors[] = {"dot", "cross", "norm", NULL}, *const rotations[] = {"omega", "turn",
                                                                                              "transpose", NULL};
   const Ast *ast = t->b->ast;
-  int ambiguous;
-  const Entity *own = scope_find(&t->b->scope, x->name, f->effect, &ambiguous);
+  const Entity *own = scope_find(&t->b->scope, x->name, f->effect, NULL);
   if (own && own->kind == ENT_FUNCTION) return value_or_wait(t, f, ENT_FUNCTION, own->index, NULL);
   AstId second = x->args ? ast_expr(ast, x->args)->next : 0, third = second ? ast_expr(ast, second)->next : 0;
   if (strcmp(x->name, "lambda") == 0) return multiplier(t, f, x->args);

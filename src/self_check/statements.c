@@ -347,10 +347,8 @@ static Ref output_value(Walk *w, const OutputText *o) {
 
 /* 1 for the output `energy`, unless the model declares that name. */
 static int is_energy(const DirectEval *t, const OutputText *o) {
-  int ambiguous;
   const AstExpr *x = o->id ? ast_expr(t->b->ast, o->id) : NULL;
-  return x && x->kind == AST_NAME && strcmp(x->name, "energy") == 0 &&
-         !scope_find(&t->b->scope, x->name, NULL, &ambiguous);
+  return x && x->kind == AST_NAME && strcmp(x->name, "energy") == 0 && !scope_find(&t->b->scope, x->name, NULL, NULL);
 }
 
 static void read_energies(Walk *w, const AstStmt *st, Name effect) {

@@ -19,8 +19,7 @@ static Generator generator_of(const Eqns *e, const Symmetry *y) {
   uint32_t *place = ARENA_ARRAY(e->m->arena, uint32_t, expr_symbol_count(e->g) + 1); /* 1 + index */
   Generator by = {.xi = xi};
   for (uint32_t i = 0; i < n; i++) place[eqns_coordinate(e, i)] = i + 1;
-  for (uint32_t k = 0; k < y->moves.n; k++) {
-    const Move *move = &y->moves.at[k];
+  vec_each(const Move, move, y->moves) {
     if (move->target == e->m->time) by.tau = move->rate;
     if (place[move->target]) xi[place[move->target] - 1] = move->rate;
   }
@@ -222,13 +221,6 @@ int charges_judge(const Eqns *e, Name effect) {
   return good;
 }
 
-/* "conserved", "changes" or "not decided whether it changes". */
-static const char *charge_verdict(const Noether *is) {
-  static const char *const words[] = {
-      [PROVED_ZERO] = "conserved", [PROVED_NONZERO] = "changes", [NOT_DECIDED] = "not decided whether it changes"};
-  return words[is->drift];
-}
-
 #define NO_RATE "L depends on an input whose rate of change is not known"
 
 /* "d(spin)/dt = ...". */
@@ -240,7 +232,9 @@ static const char *power_text(const Eqns *e, const Charge *c) {
 /* Appends "; changes: d(spin)/dt = ...", unless the charge is conserved. */
 static void put_balance(const Eqns *e, const Charge *c, StrBuf *out) {
   if (c->proof.drift == PROVED_ZERO) return;
-  const char *how = c->proof.over_time ? "without that integral" : charge_verdict(&c->proof);
+  const char *how = c->proof.over_time              ? "without that integral"
+                    : c->proof.drift == NOT_DECIDED ? "not decided whether it changes"
+                                                    : "changes";
   sb_printf(out, "; %s: %s", how, c->proof.power_unknown ? NO_RATE : power_text(e, c));
 }
 

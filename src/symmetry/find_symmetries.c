@@ -7,7 +7,6 @@
 
 #include "mech/lagrange.h"
 #include "sym/diff.h"
-#include "sym/normal_form.h"
 #include "sym/print.h"
 #include "sym/simplify.h"
 
@@ -258,9 +257,8 @@ static void search_listed(SymmetrySearch *s) {
   s->out->searched = noether_add_family(s, &f);
   s->out->ansatz =
       arena_printf(s->e->m->arena,
-                   "xi affine in the coordinates%s%s, with coefficients in t: %s; F a polynomial of degree %u in "
-                   "the coordinates, "
-                   "with those%s%s, and any function of t alone",
+                   "xi affine in the coordinates%s%s, with coefficients in t: %s; F a polynomial of degree %u in the "
+                   "coordinates, with those%s%s, and any function of t alone",
                    !s->ansatz->whole ? " (turns and stretches of one vector only)" : "", tau_text(s->ansatz),
                    functions_text(s, &f.times, 0, f.times.n), s->ansatz->degree,
                    f.times.n < f.times.ngauge ? " and " : "", functions_text(s, &f.times, f.times.n, f.times.ngauge));
@@ -401,11 +399,9 @@ static FoundSymmetries search(Eqns *e, SearchLimit *limit) {
 /* Whether energy, three momenta, three angular momenta and three boosts are among them. */
 static int has_galilean_charges(const FoundSymmetries *all) {
   uint32_t seen[SYMMETRY_SCALING + 1] = {0};
-  for (uint32_t k = 0; k < all->all.n; k++) {
-    const FoundSymmetry *s = &all->all.at[k];
+  vec_each(const FoundSymmetry, s, all->all)
     if (s->kind == SYMMETRY_ENERGY) seen[s->kind] = 7;
     else if (s->of_all) seen[s->kind] |= 1u << s->axis;
-  }
   return seen[SYMMETRY_ENERGY] && seen[SYMMETRY_MOMENTUM] == 7 && seen[SYMMETRY_ROTATION] == 7 &&
          seen[SYMMETRY_BOOST] == 7;
 }

@@ -12,7 +12,6 @@
 #include "symmetry/find_symmetries.h"
 #include "sym/diff.h"
 #include "sym/expr_eval.h"
-#include "sym/normal_form.h"
 #include "sym/prove.h"
 
 enum { KNOWN_MOST = 400, STATES = 4, TRIES = 200, ROTATIONS_MOST = 6, STEPS_MOST = 20000 };
@@ -39,10 +38,6 @@ typedef struct {
 
 /* --- the known charges --- */
 
-static int is_periodic(const Model *m, const Symbol *q) {
-  return q->kind == SYM_COORD ? m->coords.at[q->index].periodic : m->states.at[q->index].periodic;
-}
-
 /* Whether x has one value for an angle and the angle and a turn, to rounding at random states. */
 static int same_after_a_turn(const Search *w, Expr x, SymId angle) {
   const long double turn = 6.28318530717958647692528676655900577L, rounding = 1e-12L;
@@ -64,7 +59,7 @@ static int same_after_a_turn(const Search *w, Expr x, SymId angle) {
 static int is_single_valued(const Search *w, Expr x) {
   for (uint32_t i = 0; i < w->space.n; i++) {
     SymId q = w->space.q[i];
-    if (!is_periodic(w->e->m, expr_symbol(w->g, q)) || !expr_contains_sym(w->g, x, q)) continue;
+    if (!model_is_periodic(w->e->m, q) || !expr_contains_sym(w->g, x, q)) continue;
     if (!same_after_a_turn(w, x, q) && same_after_a_turn(w, w->space.H, q)) return 0;
   }
   return 1;

@@ -90,10 +90,9 @@ static void look_into(FunctionSearch *s, Expr x) {
   else if (op != EX_SUM && op != EX_PROD) {
     if (!(s->has[x] & HAS_V)) add_function(s, x);
   } else
-    for (ExprPair part = {0}; expr_next_pair(g, x, op, &part);) {
+    for (ExprPair part = {0}; expr_next_pair(g, x, op, &part);)
       if (op == EX_SUM || is_power(part.num)) s->is_wanted[part.of] = 1;
       else if (s->has[part.of] == HAS_Q) add_function(s, expr_pow_num(g, part.of, part.num));
-    }
 }
 
 /* Adds the functions in x; returns the degree of its polynomials. */
@@ -145,11 +144,9 @@ static void read_function(MomentumAnsatz *a, FunctionSearch *s, Expr L) {
 /* Sine and cosine of each coordinate that is declared periodic: the Runge-Lenz vector in polar coordinates contains
  * them, L does not. */
 static void add_angles(MomentumAnsatz *a, FunctionSearch *s) {
-  const Model *m = a->e->m;
   a->spare = (uint32_t)a->curved;
   for (uint32_t i = 0; i < a->n; i++) {
-    int periodic = m->hamiltonian ? m->states.at[m->pairs.at[i].q].periodic : m->coords.at[i].periodic;
-    if (!periodic) continue;
+    if (!model_is_periodic(a->e->m, a->q[i])) continue;
     add_function(s, expr_fn(a->g, EX_SIN, node(a, a->q[i])));
     a->spare = 2 * (uint32_t)a->curved;
   }

@@ -1,7 +1,6 @@
 /* Assembles the report, and carries generators over to the graph of the model with an effect, by names of symbols. */
 #include "symmetry/noether_report.h"
 
-
 #include "symmetry/charges.h"
 #include "mech/discontinuity.h"
 #include "sym/prove.h"

@@ -315,10 +315,8 @@ static Expr scale_of(const ProofWork *w, Expr F) {
 static Expr constraint_moved(const ProofWork *w, Expr c) {
   Expr *seed = ARENA_ARRAY(w->m->arena, Expr, w->symbols);
   memcpy(seed, w->moving, w->symbols * sizeof *seed);
-  for (uint32_t i = 0; i < w->m->inputs.n; i++) {
-    const Input *in = &w->m->inputs.at[i];
+  vec_each(const Input, in, w->m->inputs)
     if (in->rate) seed[in->sym] = expr_mul(w->g, w->tau, proof_node(w, w->m->inputs.at[in->rate].sym));
-  }
   return tangent(w, c, seed, "_delta");
 }
 
@@ -363,8 +361,7 @@ static Expr power_of_change(const ProofWork *w, Noether *to) {
   if (expr_is_zero(g, w->tau)) return expr_int(g, 0);
   for (uint32_t i = 0; i < m->states.n; i++)
     if (is_other_state(w->e, i)) seed[m->states.at[i].z] = w->e->flow[i];
-  for (uint32_t i = 0; i < m->inputs.n; i++) {
-    const Input *in = &m->inputs.at[i];
+  vec_each(const Input, in, m->inputs) {
     if (!(expr_kinds(g, w->L) & 1u << SYM_INPUT) || !expr_contains_sym(g, w->L, in->sym) ||
         model_is_contact_switch(m, in->sym))
       continue;
@@ -393,8 +390,7 @@ static Expr power_of_forces(const ProofWork *w) {
 static int moves_jumps(const ProofWork *w) {
   const long double still = 1e-7L; /* states lie on a jump to 1e-19 of their size, slopes are known to 1e-6 */
   ExprJumps all = discontinuities_of(w->e, w->L);
-  for (uint32_t i = 0; i < all.n; i++) {
-    const ExprJump *jump = &all.at[i];
+  vec_each(const ExprJump, jump, all) {
     Expr change = moved_by(w, jump->side);
     long double bound, value = value_with_bound(w->g, change, jump->symbols, NULL, &bound);
     if (!(fabsl(value) <= still * fabsl(jump->slope))) return 1;

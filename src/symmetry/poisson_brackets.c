@@ -9,7 +9,6 @@
 #include "symmetry/number_recognition.h"
 #include "sym/diff.h"
 #include "sym/expr_eval.h"
-#include "sym/normal_form.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"
 
@@ -201,10 +200,9 @@ static void check_fit(const BracketFit *w, const Sample *x, size_t pair, long do
     for (uint32_t k = 0; k < m; k++) left -= c[k] * x->charges[s * m + k];
     worst = fmaxl(worst, fabsl(left));
   }
-  for (uint32_t k = 0; k < m; k++) {
+  for (uint32_t k = 0; k < m; k++)
     if (worst > 1e-8L * x->size[pair]) c[k] = NAN;
     else c[k] = fabsl(c[k]) < 1e-10L * x->size[pair] ? 0 : c[k] / x->scale[k];
-  }
 }
 
 /* Coefficients of all brackets, [pairs*(r + 1)]; NAN where a bracket is no combination. 0: they cannot be had. */

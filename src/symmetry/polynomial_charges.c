@@ -386,8 +386,7 @@ static void search_all(Arena *scratch, void *data) {
   s->choices = choices_new(scratch, s->e, task->known->attempt, 1);
   s->a = momentum_ansatz_new(scratch, s->e);
   uint32_t of_energy = s->a->quadratic ? 2 : 1; /* y*sqrt(1 + y'^2): the square of the energy is of degree 2 */
-  for (uint32_t k = 0; k < task->known->all.n; k++) {
-    const FoundSymmetry *f = &task->known->all.at[k];
+  vec_each(const FoundSymmetry, f, task->known->all) {
     PolynomialCharge charge = {expr_is_zero(s->g, f->by.tau) ? 1 : of_energy, f->is.charge};
     if (is_constant(s, f)) vec_push(scratch, &s->known, charge);
   }

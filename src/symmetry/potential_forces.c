@@ -12,15 +12,11 @@
 #include "sym/prove.h"
 #include "sym/sides.h"
 
-static int is_periodic(const ProofWork *w, uint32_t i) {
-  return w->e->n ? w->m->coords.at[i].periodic : w->m->states.at[w->e->first.at[i]].periodic;
-}
-
 /* Whether V has one value at each position: coordinates declared periodic enter by periodic functions. */
 static int is_single_valued(const ProofWork *w, Expr V) {
   Expr turn = expr_mul(w->g, expr_int(w->g, 2), expr_symbol(w->g, w->m->pi)->node);
   for (uint32_t i = 0; i < w->n; i++) {
-    if (!is_periodic(w, i) || !expr_contains_sym(w->g, V, w->q[i])) continue;
+    if (!model_is_periodic(w->m, w->q[i]) || !expr_contains_sym(w->g, V, w->q[i])) continue;
     Expr there = expr_add(w->g, proof_node(w, w->q[i]), turn), moved = expr_replace(w->g, V, &w->q[i], &there, 1);
     if (prove_zero(w->g, expr_sub(w->g, moved, V), NULL) != PROVED_ZERO) return 0;
   }
@@ -104,7 +100,7 @@ static int has_potential(const ProofWork *w, const LinearPower *by) {
   for (uint32_t i = 0; i <= w->n; i++) expr_map_set(&place, proof_node(w, by->q[i]), i + 1);
   for (uint32_t i = 0; i <= w->n; i++) {
     ExprList l = expr_topo(g, &by->a[i], 1);
-    int turns = i < w->n && is_periodic(w, i) && !expr_is_zero(g, by->a[i]);
+    int turns = i < w->n && model_is_periodic(w->m, w->q[i]) && !expr_is_zero(g, by->a[i]);
     if (turns && (!is_single_valued(w, by->a[i]) || works_over_a_turn(w, i, by->a[i]))) return 0;
     if (turns) is = 1;
     for (uint32_t k = 0; k < l.n; k++) {

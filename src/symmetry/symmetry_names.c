@@ -257,15 +257,21 @@ static int mixes_bodies(const CoordinateNames *e, const GeneratorRow *r) {
   return 1;
 }
 
+/* The components of the rotation that begins at coordinate w: along `axis` and those behind it. 0: one is missing. */
+static int vector_part(const CoordinateNames *e, uint32_t w, uint32_t axis, uint32_t at[3]) {
+  int whole = 1;
+  for (uint32_t k = 0; k < 3; k++) whole &= (at[k] = sibling(e, w, (char)('x' + (axis + k) % 3))) != UINT32_MAX;
+  return whole;
+}
+
 /* Whether xi is a multiple of n q (a turn in space) or q n (about the body's own axis): q the quaternion that begins
  * at coordinate w, n its unit vector `axis`. */
 static int turns_rotation(const CoordinateNames *e, const GeneratorRow *r, uint32_t w, uint32_t axis, int own) {
-  uint32_t x = sibling(e, w, (char)('x' + axis)), y = sibling(e, w, (char)('x' + (axis + 1) % 3)),
-           z = sibling(e, w, (char)('x' + (axis + 2) % 3));
-  if (x == UINT32_MAX || y == UINT32_MAX || z == UINT32_MAX) return 0;
-  Expr c = entry(e, r, 0, x, w + 1), minus = expr_neg(e->g, c), other = own ? minus : c;
-  return !expr_is_zero(e->g, c) && entry(e, r, 0, w, x + 1) == minus && entry(e, r, 0, z, y + 1) == other &&
-         entry(e, r, 0, y, z + 1) == expr_neg(e->g, other);
+  uint32_t v[3];
+  if (!vector_part(e, w, axis, v)) return 0;
+  Expr c = entry(e, r, 0, v[0], w + 1), minus = expr_neg(e->g, c), other = own ? minus : c;
+  return !expr_is_zero(e->g, c) && entry(e, r, 0, w, v[0] + 1) == minus && entry(e, r, 0, v[2], v[1] + 1) == other &&
+         entry(e, r, 0, v[1], v[2] + 1) == expr_neg(e->g, other);
 }
 
 /* Names a xi that turns only w against `axis` (the sum of n q and q n) or only the two other components (their
@@ -273,11 +279,10 @@ static int turns_rotation(const CoordinateNames *e, const GeneratorRow *r, uint3
 static int name_double_turn(const CoordinateNames *e, const GeneratorRow *r, FoundSymmetry *to) {
   for (uint32_t w = 0; w < e->n && terms_of(e, r) == 2; w++)
     for (uint32_t axis = 0; axis < 3 && sibling(e, w, 'w') == w; axis++) {
-      uint32_t x = sibling(e, w, (char)('x' + axis)), y = sibling(e, w, (char)('x' + (axis + 1) % 3)),
-               z = sibling(e, w, (char)('x' + (axis + 2) % 3));
-      if (x == UINT32_MAX || y == UINT32_MAX || z == UINT32_MAX) continue;
-      int sum = turns(e, r, w, x);
-      if (!sum && !turns(e, r, y, z)) continue;
+      uint32_t v[3];
+      if (!vector_part(e, w, axis, v)) continue;
+      int sum = turns(e, r, w, v[0]);
+      if (!sum && !turns(e, r, v[1], v[2])) continue;
       to->kind = SYMMETRY_OTHER;
       to->name =
           arena_printf(e->arena, "turns about %s in space and about the body's own: the %s of the angular momenta",

@@ -104,10 +104,9 @@ static void check_indexed(Ast *ast, Span span, AstId a) {
     diag_error(ast->diags, span,
                "the index stands after the prime" HELP
                "write the prime last: `x[i]'`; a unit stands apart: `x' [m/s]`");
-  } else if (kind != AST_NAME && kind != AST_MEMBER && kind != AST_INDEX) {
+  } else if (kind != AST_NAME && kind != AST_MEMBER && kind != AST_INDEX)
     diag_error(ast->diags, span,
                "only a name has an index" HELP "a unit stands apart from the `)` before it: `(a, b) [m]`");
-  }
 }
 
 AstId ast_index(Ast *ast, Span span, AstId a, AstList indices) {

@@ -98,31 +98,24 @@ AstStmt *stmt_function(Ast *ast, Span span, Ident name, AstList args, AstId rhs)
 /* network.c; activation.name NULL: tanh. */
 AstStmt *stmt_network(Ast *ast, Span span, Ident name, AstList args, AstText path, AstList layers, Ident activation);
 AstStmt *stmt_value(Ast *ast, AstStmtKind kind, Span span, AstId rhs);
-/* `draw SHAPE[members] SUBJECT = VALUE OPTIONS`; 0 and empty: not written. */
-AstStmt *stmt_draw(Ast *ast, Span span, Ident shape, AstList members, AstId subject, AstId value, AstList options);
-AstStmt *stmt_measure(Ast *ast, Span span, Ident name, AstId rhs);
 AstStmt *stmt_pair(Ast *ast, AstStmtKind kind, Span span, AstId lhs, AstId rhs);
-AstStmt *stmt_constraint(Ast *ast, Span span, Ident name, AstList dims, AstId lhs, AstId rhs, AstId condition);
-AstStmt *stmt_equation(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstId lhs, AstId rhs);
-/* rubbing: options. */
-AstStmt *stmt_contact(Ast *ast, Span span, Ident name, AstList dims, AstId gap, AstId restitution, AstList rubbing);
+/* `NAME[dims]: LHS = RHS`, a contact with its gap and restitution, `draw SHAPE[dims] SUBJECT = VALUE`; args: options,
+ * the condition of a constraint. 0 and empty: not written. */
+AstStmt *stmt_equation(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstId lhs, AstId rhs,
+                       AstId args);
 /* A guide; where its slip has two components, along a surface, the contacts NAME and NAME.back of its two sides. */
 StmtList stmts_guide(Ast *ast, Span span, Ident name, AstList dims, AstId sides, AstList rubbing);
 AstId ast_sides(Ast *ast, Span span, Span op, AstId lhs, AstId rhs); /* -(lhs - rhs), and before both 0 */
 /* `friction NAME on q: f, static = most`: the force -f*sign(q') on q, and its value, the observable NAME. most: 0
  * where there is none. Where f contains `lambda(...)`, a guide whose slip is q'. */
 StmtList stmts_friction(Ast *ast, Span span, Ident name, AstList dims, AstId place, AstId f, AstId most);
-AstStmt *stmt_symmetry(Ast *ast, Span span, Ident name, AstList args, AstText doc, StmtList maps);
-/* `canonical NAME(args): maps`: items `Q = ...` and `F2(q, P) = ...`. */
-AstStmt *stmt_canonical(Ast *ast, Span span, Ident name, AstList args, AstText doc, StmtList items);
+/* `symmetry NAME(args): maps`; `canonical NAME(args): maps`, items `Q = ...` and `F2(q, P) = ...`. */
+AstStmt *stmt_maps(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList args, AstText doc, StmtList maps);
 AstStmt *stmt_event(Ast *ast, Span span, Ident name, AstList dims, AstId when, AstDirection way, StmtList body);
 /* The statements inside a `for` over each range `i in 1..N` among the expressions first .. last, in whose place its
  * index stands: `observe u[i in 1..N] = e` is `for i in 1..N { observe u[i] = e }`. last 0: the statements alone. */
 StmtList stmts_each(Ast *ast, AstId first, AstId last, StmtList list);
 AstStmt *stmt_for(Ast *ast, Span span, Ident index, AstId lo, AstId hi, StmtList body);
-AstStmt *stmt_for_map(Ast *ast, Span span, Ident index, AstId lo, AstId hi, AstStmt *map);
-AstStmt *stmt_options(Ast *ast, AstStmtKind kind, Span span, Ident name, StmtList options);
-AstStmt *stmt_output(Ast *ast, Span span, AstList what, AstId every);
 
 /* Adds an item to a symmetry; a map after `for ...:` belongs to that `for`. */
 StmtList maps_add(StmtList maps, AstStmt *item);

@@ -83,13 +83,10 @@ AstStmt *stmt_titled(Ast *ast, AstStmtKind kind, Span span, Ident name, AstText 
 }
 
 static void check_type(Ast *ast, Ident type) {
-  static const char *const known[] = {"vec2", "vec3", "rotation"};
-  Name names[3];
-  for (size_t i = 0; i < 3; i++) {
+  static const Name known[] = {"vec2", "vec3", "rotation"};
+  for (size_t i = 0; i < 3; i++)
     if (strcmp(type.name, known[i]) == 0) return;
-    names[i] = intern(ast->names, known[i]);
-  }
-  Name near = suggest(type.name, names, 3);
+  Name near = suggest(type.name, known, 3);
   diag_error(ast->diags, type.span, "unknown type `%s`", type.name);
   if (near) diag_help(ast->diags, "did you mean `%s`?", near);
   else diag_help(ast->diags, "the types are `vec2`, `vec3` and, of coordinates, `rotation`; a number has none");
@@ -184,23 +181,13 @@ AstStmt *stmt_pair(Ast *ast, AstStmtKind kind, Span span, AstId lhs, AstId rhs) 
   return s;
 }
 
-AstStmt *stmt_equation(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstId lhs, AstId rhs) {
+AstStmt *stmt_equation(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstId lhs, AstId rhs,
+                       AstId args) {
   AstStmt *s = stmt_name(ast, kind, span, name);
   s->dims = dims.first;
   s->lhs = lhs;
   s->rhs = rhs;
-  return s;
-}
-
-AstStmt *stmt_contact(Ast *ast, Span span, Ident name, AstList dims, AstId gap, AstId restitution, AstList rubbing) {
-  AstStmt *s = stmt_equation(ast, STMT_CONTACT, span, name, dims, gap, restitution);
-  s->args = rubbing.first;
-  return s;
-}
-
-static AstStmt *stmt_guide(Ast *ast, Span span, Ident name, AstList dims, AstId lhs, AstId rhs, AstList rubbing) {
-  AstStmt *s = stmt_equation(ast, STMT_GUIDE, span, name, dims, lhs, rhs);
-  s->args = rubbing.first;
+  s->args = args;
   return s;
 }
 
@@ -220,17 +207,12 @@ AstId ast_sides(Ast *ast, Span span, Span op, AstId lhs, AstId rhs) {
 
 StmtList stmts_guide(Ast *ast, Span span, Ident name, AstList dims, AstId sides, AstList rubbing) {
   AstId gap = ast_expr(ast, sides)->a, none = gap - 1;
-  AstStmt *s = stmt_guide(ast, span, name, dims, ast_expr(ast, gap)->a, ast_expr(ast, gap)->b, rubbing);
+  AstStmt *s =
+      stmt_equation(ast, STMT_GUIDE, span, name, dims, ast_expr(ast, gap)->a, ast_expr(ast, gap)->b, rubbing.first);
   if (!slips_on_surface(ast, s)) return stmts_one(s);
   Ident back = {intern(ast->names, arena_printf(ast->arena, "%s.back", name.name)), name.span};
-  AstStmt *front = stmt_contact(ast, span, name, dims, gap, none, rubbing);
-  return stmts_add(stmts_one(front), stmt_contact(ast, span, back, dims, sides, none, rubbing));
-}
-
-AstStmt *stmt_constraint(Ast *ast, Span span, Ident name, AstList dims, AstId lhs, AstId rhs, AstId condition) {
-  AstStmt *s = stmt_equation(ast, STMT_CONSTRAINT, span, name, dims, lhs, rhs);
-  s->args = condition;
-  return s;
+  AstStmt *front = stmt_equation(ast, STMT_CONTACT, span, name, dims, gap, none, rubbing.first);
+  return stmts_add(stmts_one(front), stmt_equation(ast, STMT_CONTACT, span, back, dims, sides, none, rubbing.first));
 }
 
 static int has_multiplier(const Ast *ast, AstId root) {
@@ -250,7 +232,7 @@ static StmtList guide_friction(Ast *ast, Span span, Ident name, AstList dims, As
   AstId size = ast_option(ast, span, "friction", f);
   AstList options = ast_list_add(ast, ast_list(size), ast_option(ast, span, "slip", rate));
   if (most) options = ast_list_add(ast, options, ast_option(ast, span, "static", most));
-  return stmts_add(stmts_one(stmt_guide(ast, span, name, dims, 0, 0, options)), shown);
+  return stmts_add(stmts_one(stmt_equation(ast, STMT_GUIDE, span, name, dims, 0, 0, options.first)), shown);
 }
 
 StmtList stmts_friction(Ast *ast, Span span, Ident name, AstList dims, AstId place, AstId f, AstId most) {
@@ -265,15 +247,9 @@ StmtList stmts_friction(Ast *ast, Span span, Ident name, AstList dims, AstId pla
   return stmts_add(stmts_one(force), shown);
 }
 
-AstStmt *stmt_symmetry(Ast *ast, Span span, Ident name, AstList args, AstText doc, StmtList maps) {
-  AstStmt *s = stmt_titled(ast, STMT_SYMMETRY, span, name, doc, maps);
+AstStmt *stmt_maps(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList args, AstText doc, StmtList maps) {
+  AstStmt *s = stmt_titled(ast, kind, span, name, doc, maps);
   s->args = args.first;
-  return s;
-}
-
-AstStmt *stmt_canonical(Ast *ast, Span span, Ident name, AstList args, AstText doc, StmtList items) {
-  AstStmt *s = stmt_symmetry(ast, span, name, args, doc, items);
-  s->kind = STMT_CANONICAL;
   return s;
 }
 
@@ -287,7 +263,7 @@ StmtList maps_add(StmtList maps, AstStmt *item) {
 }
 
 AstStmt *stmt_event(Ast *ast, Span span, Ident name, AstList dims, AstId when, AstDirection way, StmtList body) {
-  AstStmt *s = stmt_equation(ast, STMT_EVENT, span, name, dims, when, 0);
+  AstStmt *s = stmt_equation(ast, STMT_EVENT, span, name, dims, when, 0, 0);
   s->direction = way;
   s->body = body.first;
   s->last = body.last;
@@ -300,32 +276,6 @@ AstStmt *stmt_for(Ast *ast, Span span, Ident index, AstId lo, AstId hi, StmtList
   s->rhs = hi;
   s->body = body.first;
   s->last = body.last;
-  return s;
-}
-
-AstStmt *stmt_for_map(Ast *ast, Span span, Ident index, AstId lo, AstId hi, AstStmt *map) {
-  return stmt_for(ast, span, index, lo, hi, stmts_one(map));
-}
-
-AstStmt *stmt_options(Ast *ast, AstStmtKind kind, Span span, Ident name, StmtList options) {
-  return stmt_titled(ast, kind, span, name, (AstText){0}, options);
-}
-
-AstStmt *stmt_output(Ast *ast, Span span, AstList what, AstId every) {
-  AstStmt *s = stmt_value(ast, STMT_OUTPUT, span, every);
-  s->args = what.first;
-  return s;
-}
-
-AstStmt *stmt_draw(Ast *ast, Span span, Ident shape, AstList members, AstId subject, AstId value, AstList options) {
-  AstStmt *s = stmt_equation(ast, STMT_DRAW, span, shape, members, subject, value);
-  s->args = options.first;
-  return s;
-}
-
-AstStmt *stmt_measure(Ast *ast, Span span, Ident name, AstId rhs) {
-  AstStmt *s = stmt_name(ast, STMT_MEASURE, span, name);
-  s->rhs = rhs;
   return s;
 }
 

@@ -99,18 +99,9 @@ static const char *missing_comma(const Parse *cx, const TokKind *set, int n) {
   const Token *t = &cx->current;
   if (t->kind != TOK_IDENT || !token_is_in(set, n, TOK_COMMA) || cx->open.span.end) return NULL;
   switch (cx->filter->word) {
-  case TOK_PARAM:
-  case TOK_CONST:
-  case TOK_INPUT:
-  case TOK_LET:
-  case TOK_OBSERVE:
-  case TOK_START:
-  case TOK_FLOW:
+  case TOK_PARAM: case TOK_CONST: case TOK_INPUT: case TOK_LET: case TOK_OBSERVE: case TOK_START: case TOK_FLOW:
   case TOK_EXACT: return sets_next(cx) ? arena_printf(cx->ast->arena, "put a `,` before `%s`", t->name) : NULL;
-  case TOK_COORD:
-  case TOK_STATE:
-  case TOK_USE:
-  case TOK_REQUIRES:
+  case TOK_COORD: case TOK_STATE: case TOK_USE: case TOK_REQUIRES:
   case TOK_EXCLUDES: return arena_printf(cx->ast->arena, "put a `,` before `%s`", t->name);
   case TOK_OUTPUT: return arena_printf(cx->ast->arena, "put a `,` before `%s`; a product is written with `*`", t->name);
   default: return NULL;

@@ -241,7 +241,6 @@ int scan_unknown(Scan *s, Token *t, const char *text, int n) {
     return bad(s, t, 0, 1, arena_printf(s->arena, "a control character (0x%02X)", c), NULL);
   return bad(s, t, 0, 1, arena_printf(s->arena, "`%c` is not a sign of this language", c),
              c == '\\' ? "this is not LaTeX: write `x'` for \\dot{x}, `x''` for \\ddot{x}, `a/b` for \\frac{a}{b}, "
-                         "`theta` or `θ` for "
-                         "\\theta"
+                         "`theta` or `θ` for \\theta"
                        : NULL);
 }

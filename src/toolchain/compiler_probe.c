@@ -83,16 +83,15 @@ static int takes_exports(const Probe *p) {
   return takes;
 }
 
-/* The file that the first word of cc names, from $PATH. */
-static const char *compiler_file(Arena *a, const char *cc) {
+const char *compiler_file(Arena *a, const char *cc) {
   const char *word = arena_strndup(a, cc, strcspn(cc, " ")), *path = getenv("PATH");
-  for (const char *at = path ? path : ""; *at && !strchr(word, '/');) {
-    size_t n = strcspn(at, ":");
-    const char *file = arena_printf(a, "%.*s/%s", (int)n, at, word);
-    if (access(file, X_OK) == 0) return file;
-    at += n + (at[n] == ':');
+  if (strpbrk(word, "/\\")) return file_exists(word) ? word : NULL;
+  for (size_t n; path && *path; path += n + (path[n] != '\0')) {
+    n = strcspn(path, PATH_SEPARATOR);
+    const char *file = arena_printf(a, "%.*s/%s" PROGRAM_SUFFIX, (int)n, path, word);
+    if (file_exists(file)) return file;
   }
-  return word;
+  return NULL;
 }
 
 /* The entry of this compiler, in the cache around the build folder: its words, its file, and what it says its version
@@ -101,7 +100,7 @@ static const char *entry_of(Arena *a, const char *cc, const char *optimise, cons
   static const char *const more[] = {"--version", NULL};
   char *said = NULL;
   if (compiler_run(a, cc, more, &said) != 0) return NULL;
-  const char *file = file_identity(a, compiler_file(a, cc));
+  const char *path = compiler_file(a, cc), *file = file_identity(a, path ? path : cc);
   const char *is = arena_printf(a, "%s %s\n%s\n%s\nexports", cc, optimise, file, said);
   uint64_t h1 = lag_fnv1a(LAG_FNV1A_START, is, strlen(is)),
            h2 = lag_fnv1a(UINT64_C(0x9e3779b97f4a7c15), is, strlen(is));

@@ -17,6 +17,9 @@ typedef struct {
 /* Runs the compiler with the words `more` after those of cc, which may hold options; returns its exit status. */
 int compiler_run(Arena *a, const char *cc, const char *const *more, char **said);
 
+/* The file that the first word of cc names, from $PATH; NULL: there is none. */
+const char *compiler_file(Arena *a, const char *cc);
+
 /* The traits of `cc` (with its options, as in $CC) at this level of optimisation; its programs are made in the folder
  * dir, which lies in the cache. Returns 0, with *error, when it stores wrong numbers with every flag. */
 int compiler_probe(Arena *a, const char *cc, const char *optimise, const char *dir, CompilerTraits *t,

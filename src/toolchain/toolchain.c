@@ -254,9 +254,8 @@ static int build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n
   const char *why;
   int ok = !t->soname || is_alone(t) ||
            file_write(arena_printf(a, "%s/exports.map", f->path), exports, strlen(exports), &why);
-  for (size_t i = 0; i < n && ok; i++) {
+  for (size_t i = 0; i < n && ok; i++)
     ok = file_write(arena_printf(a, "%s/%s", f->path, texts[i].name), texts[i].text, strlen(texts[i].text), &why);
-  }
   if (!ok) *error = cannot_write(a, f->path, why);
   ok = ok && compile_with_tmpdir(a, t, f->path, texts, n, error);
   if (ok && !file_exists(made_in(a, t, f->path))) {
@@ -346,15 +345,7 @@ const char *toolchain_entry(Arena *a, const Toolchain *t, const SourceText *text
   return arena_printf(a, "%016llx%016llx", (unsigned long long)h1, (unsigned long long)h2);
 }
 
-int toolchain_has_compiler(Arena *a, const Toolchain *t) {
-  const char *name = arena_strndup(a, t->cc, strcspn(t->cc, " ")), *path = getenv("PATH");
-  if (strpbrk(name, "/\\")) return file_exists(name);
-  for (size_t n; path && *path; path += n + (path[n] != '\0')) {
-    n = strcspn(path, PATH_SEPARATOR);
-    if (file_exists(arena_printf(a, "%.*s/%s" PROGRAM_SUFFIX, (int)n, path, name))) return 1;
-  }
-  return 0;
-}
+int toolchain_has_compiler(Arena *a, const Toolchain *t) { return compiler_file(a, t->cc) != NULL; }
 
 /* Whether the file begins as the running program does: with the mark of ELF, Mach-O, PE. */
 static int is_program(const char *path) {
