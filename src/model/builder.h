@@ -153,6 +153,7 @@ struct Builder {
   uint32_t nbound;
   int gives_lagrangian; /* the model itself has L, T or V */
   int in_friction; /* lambda(NAME) may stand in the size of a friction */
+  Span force_span; /* of a lambda(NAME) elsewhere; empty: there is none */
   int brackets;    /* {f, g} in an expression is a Poisson bracket */
   int domains;     /* compute Value.domain, for claims */
   uint32_t sums_from; /* sums over at least so many pairs are not written out; 0: none is */

@@ -121,8 +121,8 @@ static int read_friction(Work *w, ContactFamily *to, const Value *gap) {
   for (AstId i = w->st->args; i; i = ast_expr(b->ast, i)->next)
     if (strcmp(ast_expr(b->ast, i)->name, "law") == 0)
       return diag_error(b->diags, ast_expr(b->ast, i)->span,
-                        "not yet: `law` of a family of contacts, which moreau follows" HELP
-                        "write `for i in 1..N { contact ... }`: dop853 follows contacts one by one");
+                        "`law` of a family of contacts is not supported: moreau, which follows it, has a law of its own"
+                        HELP "leave it out, or write single contacts, `for i in 1..N { contact ... }`, for dop853");
   AstId id = ast_option_value(b->ast, w->st, "slip"), most = ast_option_value(b->ast, w->st, "static");
   Value slip = evaluate(w, id);
   to->friction = option(w, "friction", zero);
@@ -223,10 +223,9 @@ void add_contact_family(Builder *b, const AstStmt *st, Name effect) {
 void check_contact_families(Builder *b) {
   const Model *m = b->m;
   if (!m->families.n || b->diags->errors) return;
-  if (m->constraints.n)
-    diag_error(b->diags, m->constraints.at[0].span,
-               "not yet: constraints and single contacts beside a family of contacts" HELP
-               "write a single contact as a family, `contact floor[i in 1..1]: ...`");
+  if (b->force_span.end)
+    diag_error(b->diags, b->force_span, "forces beside a family of contacts are not supported: its impulses would be "
+               "missing from them" HELP "write single contacts, `for i in 1..N { contact ... }`");
   for (uint32_t k = 0; k < m->families.n; k++)
     for (uint32_t i = 0; i < m->families.at[k].params.n; i++) {
       const Param *p = &m->params.at[expr_symbol(b->g, m->families.at[k].params.at[i].symbol)->index];

@@ -134,8 +134,6 @@ edit first 's/near(i, 0.14)/near(k, 0.14)/'
 check "near of another index" says '`near` takes the first index' check first
 edit moves 's/near(i, 0.14)/near(i, r[1].x)/'
 check "a cut-off that moves" says 'the cut-off and the box of `near` move' check moves
-edit beside 's/^contact wall.*/contact wall: r[1].x >= 0, restitution = 0/'
-check "a single contact beside" says 'single contacts beside a family' check beside
 edit dop853 's/moreau(step = 0.002)/dop853/'
 check "another method" says 'does not follow the family of contacts `hit`' check dop853
 check "another method of the command line" says 'does not follow the family of contacts hit' run near --method dop853
