@@ -224,7 +224,7 @@ void declare_momentum(Builder *b, const AstStmt *st, Name effect, void *data) {
     declare_motion(b, st, effect);
   } else if (st->dims) {
     diag_error(b->diags, st->name_span,
-               "not yet: names for the momenta of a family whose Lagrangian is given" HELP
+               "names for the momenta of a family whose Lagrangian is given are not supported" HELP
                "they are called `%s[1]` and so on",
                ast_expr(b->ast, st->rhs)->name);
     declare_refused(b, st, effect);

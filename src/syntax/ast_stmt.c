@@ -109,26 +109,34 @@ AstStmt *stmt_coord(Ast *ast, AstStmtKind kind, Span span, AstDeclared of, int p
   return s;
 }
 
-/* A name, or its member [_i]. */
-static AstId member_of(Ast *ast, Ident name, const Ident *index) {
+/* A name, or its member [_i], [_i,_j]. */
+static AstId member_of(Ast *ast, Ident name, const Ident *index, int n) {
   AstId id = ast_name(ast, name);
-  return index ? ast_index(ast, name.span, id, ast_list(ast_name(ast, *index))) : id;
+  AstList at = {0};
+  for (int k = 0; k < n; k++) at = k ? ast_list_add(ast, at, ast_name(ast, index[k])) : ast_list(ast_name(ast, index[k]));
+  return n ? ast_index(ast, name.span, id, at) : id;
 }
 
-/* p*q', dot(p, q') of vectors, summed over the members of a family of `size`. */
+/* p*q', dot(p, q') of vectors, summed over the members of a family of `size`; a third index is reported elsewhere. */
 static AstId action_term(Ast *ast, Span span, Ident p, Ident q, AstId size, int is_vector) {
-  Ident i = {intern(ast->names, "_i"), span}, dot = {intern(ast->names, "dot"), span};
-  AstId lo = size ? ast_number(ast, span, num_int(1)) : 0;
-  AstId momentum = member_of(ast, p, size ? &i : NULL), coord = member_of(ast, q, size ? &i : NULL),
+  const Ident index[] = {{intern(ast->names, "_i"), span}, {intern(ast->names, "_j"), span}};
+  Ident dot = {intern(ast->names, "dot"), span};
+  AstId sizes[2] = {size, size ? ast_expr(ast, size)->next : 0}, lo[2] = {0};
+  int n = 0;
+  for (; n < 2 && sizes[n]; n++) { /* in the order of a text: an expression's nodes follow one another */
+    lo[n] = ast_number(ast, span, num_int(1));
+    sizes[n] = ast_copy(ast, sizes[n]);
+  }
+  AstId momentum = member_of(ast, p, index, n), coord = member_of(ast, q, index, n),
         rate = ast_prime(ast, q.span, q.span, coord), term;
   if (is_vector) term = ast_call(ast, span, dot, ast_list_add(ast, ast_list(momentum), rate));
   else term = ast_binary(ast, AST_MUL, span, span, momentum, rate);
-  return size ? ast_reduce(ast, AST_SUM, span, span, (AstTurns){i, lo, size}, term) : term;
+  while (n-- > 0) term = ast_reduce(ast, AST_SUM, span, span, (AstTurns){index[n], lo[n], sizes[n]}, term);
+  return term;
 }
 
 AstStmt *stmt_momentum(Ast *ast, Span span, Ident name, AstList dims, Ident type, Ident coord, AstUnit unit) {
   AstStmt *s = stmt_coord(ast, STMT_MOMENTUM, span, (AstDeclared){name, type, dims, unit}, 0);
-  /* first: an expression's nodes follow one another */
   s->args = action_term(ast, span, name, coord, dims.first, type.name != NULL);
   s->lhs = ast_name(ast, coord);
   s->rhs = ast_name(ast, (Ident){intern(ast->names, arena_printf(ast->arena, "p_%s", coord.name)), coord.span});

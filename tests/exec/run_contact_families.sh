@@ -60,6 +60,9 @@ check "discs slide and roll" run roll
 for i in 1 2 3; do
   check "disc $i rolls with two thirds of its speed" near "$(final "x\[$i\]'")" 0.66666666666666667 1e-12 # 64 roundings of the step
 done
+sed 's/^scene s {/effect drag { force x[1] = -3*x[1]'"'"' }\n&/; $a scene d { like s; use drag }' "$TMP/roll.lag" >"$TMP/drags.lag"
+effects() { "$LAGC" effects "$TMP/drags.lag" d >"$TMP/log" 2>&1; cat "$TMP/log"; grep -q 'drag *on.* needed' "$TMP/log"; }
+check "effects beside a family are compared" effects
 sed 's/moreau(step = 0.01)/moreau/' "$TMP/roll.lag" >"$TMP/stepless.lag"
 equal() { "$LAGC" run "$TMP/stepless.lag" >"$TMP/log" 2>&1; cat "$TMP/log"; grep -q '^steps 10000, rejected 0,' "$TMP/log"; }
 check "without a step they are equal ones, 10000 of the span" equal
@@ -137,5 +140,6 @@ check "a cut-off that moves" says 'the cut-off and the box of `near` move' check
 edit dop853 's/moreau(step = 0.002)/dop853/'
 check "another method" says 'does not follow the family of contacts `hit`' check dop853
 check "another method of the command line" says 'does not follow the family of contacts hit' run near --method dop853
-check "a header" says 'not yet: families of contacts in `lagc header`' header near
+check "a header" says '= `lagc build --shared` makes a library' header near
+check "modes" says 'families of contacts in `lagc modes` are not supported' modes near
 tap_end
