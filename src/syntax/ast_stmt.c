@@ -113,7 +113,10 @@ AstStmt *stmt_coord(Ast *ast, AstStmtKind kind, Span span, AstDeclared of, int p
 static AstId member_of(Ast *ast, Ident name, const Ident *index, int n) {
   AstId id = ast_name(ast, name);
   AstList at = {0};
-  for (int k = 0; k < n; k++) at = k ? ast_list_add(ast, at, ast_name(ast, index[k])) : ast_list(ast_name(ast, index[k]));
+  for (int k = 0; k < n; k++) {
+    AstId one = ast_name(ast, index[k]);
+    at = k ? ast_list_add(ast, at, one) : ast_list(one);
+  }
   return n ? ast_index(ast, name.span, id, at) : id;
 }
 
