@@ -46,7 +46,7 @@ typedef struct lag_moreau_contacts {
   const lag_contact *at;                               /* [contacts] */
   const lag_entry *jacobian_at, *mass_at;              /* rows and columns of entries */
   LAG_REAL epsilon, loose;                             /* rounding of LAG_REAL; part of the fastest rate, or 0 */
-  int rough;                                           /* impulses of this step do not agree to rounding */
+  LAG_REAL rough;                                      /* roundings to which impulses of this step agree, where many */
   const LAG_REAL *guess;                               /* [contacts] impulses of the step before */
   LAG_REAL *u;                                         /* inputs */
   lag_impulses all;
@@ -72,7 +72,7 @@ enum { LAG_PRESSING_SIZE = (int)(sizeof(lag_pressing)/sizeof(LAG_REAL)) };
 /* Places arrays into room[LAG_CONTACT_ROOM]; sizes are set. */
 static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG_REAL *room) {
   const int p = w->contacts, nc = w->constraints, nq = w->nq, e = w->entries;
-  w->all.n = w->rows = w->impacts = w->sweeps = w->rough = 0;
+  w->all.n = w->rows = w->impacts = w->sweeps = 0, w->rough = LAG_C(0.0);
   w->all.of = (lag_pressing *)(void *)room, room += p*LAG_PRESSING_SIZE;
   w->response = room, w->b = room += p, w->before = room += p, w->all.P = room += p, w->law = room += p;
   w->all.was = room += 2*p, w->all.went = room += p;
@@ -288,7 +288,7 @@ static inline int lag_contacts_evaluate(LAG_MODEL, lag_moreau_contacts *w, LAG_R
 static inline int lag_contacts_find(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t, LAG_REAL h, const LAG_REAL *y,
                                     const LAG_REAL *end) {
   int status = 0;
-  w->all.n = w->rows = w->impacts = w->sweeps = w->rough = 0;
+  w->all.n = w->rows = w->impacts = w->sweeps = 0, w->rough = LAG_C(0.0);
   w->all.A.first[0] = w->all.D.first[0] = LAG_C(0.0);
   lag_contact_entries(w);
   LAG_TRY(lag_contacts_evaluate(LAG_THE_MODEL, w, t, h, y, end));
@@ -340,15 +340,14 @@ static inline int lag_contacts_solve(lag_moreau_contacts *w, LAG_REAL *v) {
   const LAG_REAL enough = LAG_C(64.0)*w->epsilon*size;
   const int sweeps = lag_contact_impulses(&w->all, enough, MOST);
   w->sweeps += sweeps;
-  w->rough |= sweeps >= 1000;
+  if (sweeps >= 1000) w->rough = lag_larger(w->rough, LAG_C(1024.0)*lag_contact_swing(w->all.n, sweeps));
   lag_contacts_rest(w, v);
   return sweeps > MOST;
 }
 
 /* Part of velocities to which impulses agree. */
 static inline LAG_REAL lag_contacts_enough(const lag_moreau_contacts *w, LAG_REAL epsilon) {
-  const LAG_REAL some = LAG_C(64e7)*epsilon, little = LAG_C(1e4)*epsilon;
-  return lag_larger(w->loose, LAG_SELECT(w->rough, some, little))/epsilon;
+  return lag_larger(w->loose/epsilon, lag_larger(w->rough, LAG_C(1e4)));
 }
 
 /* ---- end ---- */

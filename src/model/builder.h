@@ -505,6 +505,8 @@ void add_contact(Builder *b, const AstStmt *st, Name effect);
 int is_contact_family(const Builder *b, const AstStmt *st);
 void add_contact_family(Builder *b, const AstStmt *st, Name effect);
 void check_contact_families(Builder *b);
+/* Whether a family of contacts reads members of the parameter e at its indices. */
+int read_by_contact_family(const Builder *b, const Entity *e);
 /* guide.c: the constraint of a guide; its friction, once all constraints are known. */
 void add_guide(Builder *b, const AstStmt *st, Name effect);
 void add_guide_friction(Builder *b, const AstStmt *st, Name effect, void *data);

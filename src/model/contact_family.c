@@ -220,6 +220,17 @@ void add_contact_family(Builder *b, const AstStmt *st, Name effect) {
     vec_push(b->arena, &b->m->families, to);
 }
 
+int read_by_contact_family(const Builder *b, const Entity *e) {
+  for (uint32_t k = 0; k < b->m->families.n; k++) {
+    const ContactFamily *f = &b->m->families.at[k];
+    for (uint32_t i = 0; i < f->params.n; i++) {
+      uint32_t read = expr_symbol(b->g, f->params.at[i].symbol)->index;
+      if (read >= e->index && read < e->index + entity_size(e)) return 1;
+    }
+  }
+  return 0;
+}
+
 void check_contact_families(Builder *b) {
   const Model *m = b->m;
   if (!m->families.n || b->diags->errors) return;
@@ -230,7 +241,7 @@ void check_contact_families(Builder *b) {
     for (uint32_t i = 0; i < m->families.at[k].params.n; i++) {
       const Param *p = &m->params.at[expr_symbol(b->g, m->families.at[k].params.at[i].symbol)->index];
       if (p->fixed)
-        diag_error(b->diags, m->families.at[k].span, "not yet: `%s` of a family of contacts as a number" HELP
+        diag_error(b->diags, m->families.at[k].span, "`%s` of a family of contacts as a number is not supported" HELP
                    "leave it out of --fix", p->name);
     }
   if (m->scene.method && strcmp(m->scene.method, "moreau") != 0)

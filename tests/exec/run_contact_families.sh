@@ -92,8 +92,8 @@ for name in near pairs single; do check "a pile, $name" rows "$name"; done
 check "it has impacts" test "$(number impacts)" -gt 10
 check "lists of neighbours change no bit" cmp "$TMP/near.csv" "$TMP/pairs.csv"
 # rounding, 1e-16, times the growth of differences: 40 impacts, each by a few
-same() { paste -d, "$TMP/near.csv" "$TMP/single.csv" | awk -F, 'NR > 1 { for (k = 1; k <= NF/2; k++) if (($k - $(k + NF/2))^2 > 1e-16) exit 1 }'; }
-check "single contacts move alike" same
+same_as() { paste -d, "$TMP/near.csv" "$TMP/$1.csv" | awk -F, 'NR > 1 { for (k = 1; k <= NF/2; k++) if (($k - $(k + NF/2))^2 > 1e-16) exit 1 }'; }
+check "single contacts move alike" same_as single
 evaluated() { "$LAGC" run "$TMP/near.lag" --compile "$1" -o "$TMP/$1.csv" >"$TMP/log" 2>&1; }
 for how in never always; do check "a run, compiled: $how" evaluated "$how"; done
 check "evaluated and compiled have the same digits" cmp "$TMP/never.csv" "$TMP/always.csv"
@@ -124,6 +124,12 @@ sed 's/{0.05, 0.06, 0.07, 0.05, 0.06, 0.07}/0.05/' "$TMP/near.lag" >"$TMP/many.l
 for n in 6 1000; do check "$n discs" "$LAGC" emit "$TMP/many.lag" -D N=$n -o "$TMP/$n.c"; done
 check "contacts of 1000 discs have the text of six" test "$(member "$TMP/6.c")" = "$(member "$TMP/1000.c")"
 check "and it is some" test "$(member "$TMP/6.c" | wc -l)" -gt 20
+
+# ---- parameters as numbers, but for those that a loop reads
+fixed() { run near --fix all 2>&1; cp "$TMP/csv" "$TMP/fixed.csv"; grep -q 'note: --fix all leaves `R` a parameter' "$TMP/err"; }
+check "all parameters as numbers" fixed
+check "with the motion of parameters" same_as fixed
+check "a radius as a number" says '`R\[[0-9]\]` of a family of contacts as a number is not supported' emit near --fix R
 
 # ---- refusals
 edit() { sed "$2" "$TMP/near.lag" >"$TMP/$1.lag"; }
