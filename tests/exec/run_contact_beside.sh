@@ -138,6 +138,32 @@ for name in beside single coupled coupled_single; do check "a pile, $name" rows 
 check "it has impacts" test "$(number impacts)" -gt 10
 check "single contacts move alike" same beside single
 check "where M couples bodies, too" same coupled coupled_single
+
+# ---- in space, with friction in two directions
+balls() { # NAME HIT END FLOOR
+  model "$1" <<END
+model balls
+const N = 5
+coord r[N]: vec3, x, y
+param mu = 0.3, R = 0.1 > 0
+lagrangian = sum(i in 1..N, dot(r[i]', r[i]')/2 - 9.81*r[i].z) + x'^2 + y'^2
+constraint rod: norm(r[1] - r[2]) = 0.3
+constraint tie: r[3].x - x = 0
+$2 norm(r[i] - r[j]) >= 2*R, restitution = 0.2 $3
+$4 r[i].z >= R, restitution = 0.2, friction = mu, slip = (r[i].x' - x', r[i].y' - y') $3
+contact wall: r[4].x >= 0, restitution = 0.3, friction = mu, slip = (r[4].y', r[4].z')
+scene s {
+  start r = {(0, 0.01, 0.3), (0.3, 0.01, 0.3), (0, 0.03, 0.6), (0.3, 0.04, 0.75), (0, 0.05, 0.9)}, r[4].x' = -1, x' = 0.5, r[3].x' = 0.5
+  span 1; method moreau(step = 0.002); output r, x, y
+}
+END
+}
+balls space 'contact hit[i in 1..N, j in 1..i-1]:' '' 'contact floor[i in 1..N]:'
+balls space_single 'for i in 1..N { for j in 1..i-1 { contact hit[i,j]:' '} }' 'for i in 1..N { for k in 1..1 { contact floor[i]:'
+for name in space space_single; do check "balls, $name" rows $name; done
+check "they have impacts" test "$(number impacts)" -gt 10
+check "single contacts in space move alike" same space space_single
+
 evaluated() { "$LAGC" run "$TMP/coupled.lag" --compile "$1" -o "$TMP/$1.csv" >"$TMP/log" 2>&1; }
 for how in never always; do check "a run, compiled: $how" evaluated "$how"; done
 check "evaluated and compiled have the same digits" cmp "$TMP/never.csv" "$TMP/always.csv"
