@@ -138,15 +138,26 @@ static int read_friction(Work *w, ContactFamily *to, const Value *gap) {
 
 /* --- reads --- */
 
+/* Whether a symbol is the same for all members: a plain name, or one member of a family that is not read at i or j. */
+static int is_same_for_all(const Work *w, const Symbol *s, int is_coord) {
+  int same = 1;
+  for (uint32_t k = 0; k < w->q.reads.n; k++) {
+    const Entity *e = w->q.reads.at[k].e;
+    same &= (e->kind == ENT_COORD) != is_coord || s->index < e->index || s->index >= e->index + entity_size(e);
+  }
+  return same || quantified_is_plain(s);
+}
+
 static int add_read(Work *w, ContactFamily *to, const Symbol *s) {
   Builder *b = w->b;
   int64_t part = 0;
   const Read *r = quantified_read_of(&w->q, s, &part);
   int is_coord = s->kind == SYM_COORD || s->kind == SYM_VEL;
-  if (s->kind == SYM_TIME || s->kind == SYM_CONST || (s->kind == SYM_PARAM && !r && quantified_is_plain(s))) return 1;
+  if (s->kind == SYM_TIME || s->kind == SYM_CONST) return 1;
+  if (s->kind == SYM_PARAM && !r && is_same_for_all(w, s, 0)) return 1;
   if (!is_coord && s->kind != SYM_PARAM)
     return refuse_family(w, w->st->lhs, "contacts of a family contain coordinates, velocities, parameters and time");
-  if (!r && !(is_coord && quantified_is_plain(s)))
+  if (!r && !(is_coord && is_same_for_all(w, s, 1)))
     return refuse_family(w, w->st->lhs, arena_printf(b->arena, "`%s` is no member at indices of this family", s->name));
   Affine at = {.first = s->index};
   if (r) {

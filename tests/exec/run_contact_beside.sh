@@ -102,10 +102,10 @@ pile() { # NAME HIT END FLOOR BOB COUPLING
   model "$1" <<END
 model pile
 const N = 6
-coord r[N]: vec2, th[N] [rad], a [rad], b [rad], w
-param mu = 0.3, R[N] = {0.05, 0.06, 0.07, 0.05, 0.06, 0.07} > 0, L = 0.4, B = 0.05
-let h = (0.25 + L*sin(a), 1.3 - L*cos(a))
-let c = h + L*(sin(b), -cos(b))
+coord r[N]: vec2, th[N] [rad], a[2] [rad], w
+param mu = 0.3, R[N] = {0.05, 0.06, 0.07, 0.05, 0.06, 0.07} > 0, L = 0.4, B[2] = 0.05
+let h = (0.25 + L*sin(a[1]), 1.3 - L*cos(a[1]))
+let c = h + L*(sin(a[2]), -cos(a[2]))
 lagrangian = sum(i in 1..N, dot(r[i]', r[i]')/2 + R[i]^2/4*th[i]'^2 - 9.81*r[i].y) + dot(c', c')/2 - 9.81*c.y + dot(h', h')/2
   + w'^2/2 - 50*(w - 0.7)^2 $6
 constraint rod: dot(r[1] - r[4], r[1] - r[4]) = 0.1069
@@ -113,12 +113,12 @@ constraint string: r[6].x + r[6].y - w = 0.1
 $2 norm(r[i] - r[j]) >= R[i] + R[j], restitution = 0.3, friction = mu,
   slip = ((r[i].x - r[j].x)*(r[i].y' - r[j].y') - (r[i].y - r[j].y)*(r[i].x' - r[j].x'))/norm(r[i] - r[j]) - R[i]*th[i]' - R[j]*th[j]' $3
 $4 r[i].y >= R[i], restitution = 0.3, friction = mu, slip = r[i].x' + R[i]*th[i]' $3
-$5 norm(r[i] - c) >= R[i] + B, restitution = 0.5 $3
+$5 norm(r[i] - c) >= R[i] + B[2], restitution = 0.5 $3
 contact wall: r[2].x >= R[2], restitution = 0.3, friction = mu, slip = r[2].y' - R[2]*th[2]'
-contact right: 0.6 - c.x >= B, restitution = 0.3
+contact right: 0.6 - c.x >= B[1], restitution = 0.3
 scene s {
-  start r[i in 1..N] = (0.1 + 0.16*(i - 2*floor(i/2)) + 0.01*i, 0.1 + 0.15*floor(i/2)), a = 30 [deg], b = -60 [deg], w = 0.61
-  span 0.5; method moreau(step = 0.002); output r, th, a, b
+  start r[i in 1..N] = (0.1 + 0.16*(i - 2*floor(i/2)) + 0.01*i, 0.1 + 0.15*floor(i/2)), a[1] = 30 [deg], a[2] = -60 [deg], w = 0.61
+  span 0.5; method moreau(step = 0.002); output r, th, a
 }
 END
 }
