@@ -221,4 +221,17 @@ check "x[2,3] is cos(8 t)" close_to "$(at_end 7)" "$(awk 'BEGIN { printf "%.17g"
 check "x[1,2] with its momentum is cos(5 t) + sin(5 t)" close_to "$(at_end 3)" "$(awk 'BEGIN { printf "%.17g", cos(5) + sin(5) }')" 1e-10
 check "observables of one index read those of two" close_to "$(at_end 15)" "$(awk 'BEGIN { printf "%.17g", 2*cos(8) }')" 1e-10
 
+# ---- names for momenta of families whose Lagrangian is given: m x', twice (i + 10 j) u', i r' and a term of another
+cat >"$TMP/names.lag" <<'END'
+model names
+const N = 3, K = 2
+coord x[N], u[N,K], r[N]: vec2
+momentum p[N] of x, w[N,K] of u, s[N]: vec2 of r
+param m = 2
+lagrangian = sum(i in 1..N, m*x[i]'^2/2 - x[i]^2/2 + dot(r[i]', r[i]')/2*i + r[i].x'*x[1] + sum(j in 1..K, (i + 10*j)*u[i,j]'^2))
+scene z { start x = 1, x[2]' = 3, u[3,2]' = 1, r[2]' = (1, 2); span 1; output p, w, s[2] }
+END
+named() { "$LAGC" run "$TMP/names.lag" --quiet -o "$TMP/names.csv" && sed -n 2p "$TMP/names.csv"; }
+is "momenta of families have names" "0,0,6,0,0,0,0,0,0,46,3,4" "$(named)"
+
 tap_end
