@@ -14,13 +14,18 @@
 static double detour(const lag_problem *pb, double dt, const double *y0, const double *y) {
   const double rounding = 1e-12;
   const int nq = pb->nq;
-  double most = 0;
-  for (int i = 0; i < nq; i++) {
+  const lag_var *q = pb->model->q;
+  double most = 0, size = 0, typical = 0;
+  for (int i = 0, of = -1; i < nq; i++) {
     double off = fabs((y[i] - y0[i]) / dt - (y[nq + i] + y0[nq + i]) / 2);
     /* else velocities of the same unit cannot make it larger */
     if (off > most * fmax(fabs(y[nq + i]), fabs(y0[nq + i]))) {
-      double size = fmax(lag_unit_magnitude(pb, y + nq, i), lag_unit_magnitude(pb, y0 + nq, i));
-      most = off * fabs(dt) > rounding * lag_typical_magnitude(pb, y0, 1, i) ? fmax(most, off / size) : most;
+      if (of < 0 || !lag_are_alike(&q[i], &q[of])) {
+        size = fmax(lag_unit_magnitude(pb, y + nq, i), lag_unit_magnitude(pb, y0 + nq, i));
+        typical = lag_typical_magnitude(pb, y0, 1, i);
+        of = i;
+      }
+      most = off * fabs(dt) > rounding * typical ? fmax(most, off / size) : most;
     }
   }
   return most;

@@ -83,7 +83,7 @@ int lag_observe(lag_sim *s, double t, const double *y, double *out) {
   /* with independence i, forces have an error of rounding/i^2 and of the state's error/i^2 */
   const double doubtful = 1e-3;
   const lag_scene *c = s->scene;
-  int impulses = s->pb.contacts && c->forces && !c->model->families, start = impulses && s->pb.contacts->length == 0.0;
+  int impulses = s->pb.contacts && c->forces && c->model->ncontacts, start = impulses && s->pb.contacts->length == 0.0;
   if (start) lag_contact_show_start(s, y);
   int weakest, rc = lag_inputs_at(&s->pb, t, y);
   if (start) lag_contact_open(s);

@@ -252,7 +252,6 @@ static void read_families(Reader *r) {
   EvaluatedFamilies *all = lag_bytes_room(b, 1, sizeof *all);
   lag_contact_family *f = lag_bytes_room(b, (size_t)n, sizeof *f);
   EvaluatedFamily *of = lag_bytes_room(b, (size_t)n, sizeof *of);
-  lag_bytes_need(b, !r->m->model.ncontacts && !r->m->nconstraints, "families of contacts stand beside others");
   int64_t most = 0;
   for (int i = 0; f && of && !b->why && i < n; i++)
     read_family(r, &f[i], &of[i]), most += 24 * ((int64_t)f[i].rows + 1) * (f[i].ncoords + f[i].nparams + 1);

@@ -21,8 +21,9 @@
  *   LAG_CLOSE(t, only, u)           a status; inputs u at t with contact `only` closed, or all of them (-1)
  *   LAG_GAPS(t, q, v, z, u, c, r)   a status; gaps and rates of all constraints
  *   LAG_GAP_MATRICES(t, y, u, A, M) a status; entries of the Jacobian and of the mass matrix
- *   LAG_UNIT_CHANGE(t, y, u, g, d, effort)  a status; d: least change with A d = g, effort = M d, and behind it
- *                                   components of forces of guides, `loads` of them
+ *   LAG_UNIT_CHANGE(w, row, t, y, u, g, d, effort)  a status; d: least change with A d = g, in which row `row` of
+ *                                   w->all.A has 1, effort = M d, and behind it components of forces of guides, `loads`
+ *                                   of them
  *   LAG_STRIKE(t, y, u, i, v)       a status; velocities after the impact of contact i alone
  *   LAG_FRICTIONS(t, y, u, law)     a status; friction and tangential restitution, two for each contact; static
  *                                   friction beside its gap
@@ -41,9 +42,11 @@ typedef struct lag_moreau_contacts {
   int contacts, constraints, nq, entries, nmass, band; /* sizes; entries: of the Jacobian; band: half bandwidth of M */
   int loads;                                           /* components of forces of guides */
   int others;                                          /* other constraints hold beside contacts */
+  const char *bound; /* [contacts] where others hold: whether they bear on its bodies; NULL: on all */
   const lag_contact *at;                               /* [contacts] */
   const lag_entry *jacobian_at, *mass_at;              /* rows and columns of entries */
   LAG_REAL epsilon, loose;                             /* rounding of LAG_REAL; part of the fastest rate, or 0 */
+  LAG_REAL rough;                                      /* roundings to which impulses of this step agree, where many */
   const LAG_REAL *guess;                               /* [contacts] impulses of the step before */
   LAG_REAL *u;                                         /* inputs */
   lag_impulses all;
@@ -69,7 +72,7 @@ enum { LAG_PRESSING_SIZE = (int)(sizeof(lag_pressing)/sizeof(LAG_REAL)) };
 /* Places arrays into room[LAG_CONTACT_ROOM]; sizes are set. */
 static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG_REAL *room) {
   const int p = w->contacts, nc = w->constraints, nq = w->nq, e = w->entries;
-  w->all.n = w->rows = w->impacts = w->sweeps = 0;
+  w->all.n = w->rows = w->impacts = w->sweeps = 0, w->rough = LAG_C(0.0);
   w->all.of = (lag_pressing *)(void *)room, room += p*LAG_PRESSING_SIZE;
   w->response = room, w->b = room += p, w->before = room += p, w->all.P = room += p, w->law = room += p;
   w->all.was = room += 2*p, w->all.went = room += p;
@@ -83,6 +86,7 @@ static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG
   w->first = room += lag_band_matrix_size(nq, w->band), w->entry = room + nc + 2;
   w->all.response = w->response, w->all.b = w->b;
   w->loose = LAG_C(0.0);
+  w->bound = 0;
 }
 
 /* Sorts entries of the Jacobian by constraints. */
@@ -105,6 +109,11 @@ static inline lag_band_matrix lag_contact_inertia(const lag_moreau_contacts *w) 
   return M;
 }
 
+/* Whether others hold bodies of contact i. */
+static inline int lag_contact_is_bound(const lag_moreau_contacts *w, int i) {
+  return w->others && (!w->bound || w->bound[i]);
+}
+
 /* Factors M, for contacts without other constraints. Not 0: it is singular. */
 static inline int lag_contacts_factor(lag_moreau_contacts *w) {
   lag_band_matrix M = lag_contact_inertia(w);
@@ -122,16 +131,17 @@ static inline int lag_contact_respond(LAG_MODEL, lag_moreau_contacts *w, LAG_REA
   const lag_sparse_rows *const A = &w->all.A;
   LAG_REAL work = LAG_C(0.0);
   int status = 0;
-  if (!w->others) {
+  if (!lag_contact_is_bound(w, i)) {
     lag_band_matrix M = lag_contact_inertia(w);
     for (int j = 0; j < w->nq; j++) w->d[j] = LAG_C(0.0);
     for (int e = (int)A->first[row]; e < (int)A->first[row + 1]; e++) w->d[(int)A->col[e]] = A->value[e];
     lag_band_matrix_solve(&M, w->d);
+    for (int j = 0; j < w->loads; j++) w->loading[row*w->loads + j] = LAG_C(0.0);
     return status;
   }
   for (int k = 0; k < w->constraints; k++) w->g[k] = k == w->at[i].constraint ? LAG_C(1.0) : LAG_C(0.0);
   LAG_TRY(LAG_CLOSE(t, i, w->u));
-  LAG_TRY(LAG_UNIT_CHANGE(t, y, w->u, w->g, w->d, w->effort));
+  LAG_TRY(LAG_UNIT_CHANGE(w, row, t, y, w->u, w->g, w->d, w->effort));
   for (int j = 0; j < w->nq; j++) work += w->d[j]*w->effort[j];
   const int moves = work > LAG_C(0.0) && LAG_FN(fabs)(lag_row_product(A, row, w->d) - LAG_C(1.0)) < LAG_C(0.5);
   for (int j = 0; j < w->nq; j++) w->d[j] = moves ? w->d[j]/work : LAG_C(0.0);
@@ -152,7 +162,7 @@ static inline int lag_contact_row(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t,
     A->value[e++] = value;
   }
   A->first[r + 1] = (LAG_REAL)e;
-  const int alone = !w->others && w->band == 0; /* M is diagonal */
+  const int alone = !lag_contact_is_bound(w, i) && w->band == 0 && w->loads == 0; /* M is diagonal */
   w->response[r] = LAG_C(0.0);
   for (int j = (int)A->first[r]; j < e && alone; j++) {
     D->col[f] = A->col[j];
@@ -278,14 +288,14 @@ static inline int lag_contacts_evaluate(LAG_MODEL, lag_moreau_contacts *w, LAG_R
 static inline int lag_contacts_find(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t, LAG_REAL h, const LAG_REAL *y,
                                     const LAG_REAL *end) {
   int status = 0;
-  w->all.n = w->rows = w->impacts = w->sweeps = 0;
+  w->all.n = w->rows = w->impacts = w->sweeps = 0, w->rough = LAG_C(0.0);
   w->all.A.first[0] = w->all.D.first[0] = LAG_C(0.0);
   lag_contact_entries(w);
   LAG_TRY(lag_contacts_evaluate(LAG_THE_MODEL, w, t, h, y, end));
   for (int i = 0; i < w->contacts; i++) {
     const int k = w->at[i].constraint;
     if (!LAG_IS_GAP(w->at[i]) || !lag_contact_takes_part(w->c[k], w->r0[k], w->r1[k], w->pace[k], h)) continue;
-    if (w->all.n == 0 && !w->others && lag_contacts_factor(w)) return LAG_SINGULAR(t);
+    if (w->all.n == 0 && (!w->others || w->bound) && lag_contacts_factor(w)) return LAG_SINGULAR(t);
     LAG_TRY(lag_contact_add(LAG_THE_MODEL, w, t, h, y, i));
   }
   return status;
@@ -330,8 +340,14 @@ static inline int lag_contacts_solve(lag_moreau_contacts *w, LAG_REAL *v) {
   const LAG_REAL enough = LAG_C(64.0)*w->epsilon*size;
   const int sweeps = lag_contact_impulses(&w->all, enough, MOST);
   w->sweeps += sweeps;
+  if (sweeps >= 1000) w->rough = lag_larger(w->rough, LAG_C(1024.0)*lag_contact_swing(w->all.n, sweeps));
   lag_contacts_rest(w, v);
   return sweeps > MOST;
+}
+
+/* Part of velocities to which impulses agree. */
+static inline LAG_REAL lag_contacts_enough(const lag_moreau_contacts *w, LAG_REAL epsilon) {
+  return lag_larger(w->loose/epsilon, lag_larger(w->rough, LAG_C(1e4)));
 }
 
 /* ---- end ---- */

@@ -526,6 +526,12 @@ static inline int lag_contact_newton(const lag_impulses *s) {
   return found;
 }
 
+/* Part of `enough` in which rows that depend on others may swing for ever: of many contacts more, after long. */
+static inline LAG_REAL lag_contact_swing(int contacts, int sweep) {
+  enum { FEW = 8, LONG = 20000 };
+  return contacts > FEW && sweep >= LONG ? LAG_C(1e10) : LAG_C(1e7);
+}
+
 /* Finds impulses P >= 0 along gaps, and of friction within mu times them, so that velocities v + D P obey these
  * laws: the rate A v + b of a gap is at least `least`, and equal where P > 0; slip velocities are in the ball
  * where friction can hold them there, else friction is at its limit and acts towards its centre. P: a guess,
@@ -559,7 +565,8 @@ static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, i
     if (change > enough && (sweep == 200 || sweep % 5000 == 0) && lag_contact_newton(s)) change = zero;
     for (int i = 0; i < s->n && !(change > enough); i++) softer += lag_contact_soften(s, &s->of[i], enough);
     if (!(change > enough) && softer == 0 && lag_contacts_loosen(s) == 0) return sweep;
-    if (sweep % 1000 == 0 && change <= LAG_C(1e7)*enough && change >= LAG_C(0.9)*before) return sweep;
+    if (sweep % 1000 == 0 && change <= lag_contact_swing(s->n, sweep)*enough && change >= LAG_C(0.9)*before)
+      return sweep;
     if (sweep % 1000 == 0) before = change;
     if (conjugate && sweep % 2 == 0) lag_contact_conjugate(s, &square);
     if (!conjugate && sweep % 32 == 0 && sweep > 200) stride = lag_contact_stride(s, stride);

@@ -9,6 +9,7 @@
  *   LAG_RESPONSES(s, w, turn)   a status; responses to contacts and friction, once y1 is known without them
  *   LAG_OBEY(s, w)              a status; s->y1 := velocities and states with contacts and friction
  *   LAG_STRUCK(w)               whether the step has an impact
+ *   LAG_ENOUGH(w, epsilon)      change of velocities, in roundings, that is enough once it falls by less than half
  *   LAG_TERM_SIZE(w, i, rate)   size of the terms of rate i
  *   LAG_KICK_FAILS(t)           status of a step whose forces change too much */
 #ifndef LAG_MOREAU_STEP_H
@@ -34,7 +35,8 @@ static inline int lag_moreau_kick(LAG_MODEL, const lag_kick *s, LAG_LAWS *w) {
     if (s->is_explicit) return status;
     for (int i = nq; i < n; i++) s->size[i] = LAG_TERM_SIZE(w, i, s->rate[i]);
     const LAG_REAL most = lag_kick_mean(s, LAG_STRUCK(w) ? LAG_C(1.0) : LAG_C(0.5));
-    if (most <= LAG_C(8.0) || (turn > 0 && most <= LAG_C(1e4) && most >= before/LAG_C(2.0))) return status;
+    const int agrees = turn > 0 && most <= LAG_ENOUGH(w, s->epsilon) && most >= before/LAG_C(2.0);
+    if (most <= LAG_C(8.0) || agrees) return status;
     before = most;
   }
   return LAG_KICK_FAILS(s->t);

@@ -69,7 +69,8 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   reset(work, pb);
   if (m->families) {
     lag_moreau_contacts_of(pb, NULL);
-    return lag_families_check_start(pb, 0, pb->begin);
+    rc = lag_families_check_start(pb, 0, pb->begin);
+    if (rc) return rc;
   }
   if (!m->contact_laws) return LAG_OK;
   rc = lag_inputs(pb, 0);
@@ -84,6 +85,8 @@ static const char *refuses(const lag_model *m, const double *opt) {
   (void)opt;
   if (m->flags & LAG_MASSLESS && (m->families || !lag_moreau_has_others(m)))
     return "some coordinates have no inertia, and impulses would move them by any amount; dop853 takes such a model";
+  if (lag_moreau_is_too_large(m))
+    return "the impulses of its families of contacts take more memory than indices count: take fewer members";
   for (int i = 0; i < m->ncontacts; i++)
     if (m->contacts[i].law)
       return "it has a law of impact of its own, and one contact or more name another; dop853 follows these";
@@ -119,6 +122,7 @@ static int meet(lag_problem *pb, const lag_kick *s, lag_moreau_contacts *w) {
 #define LAG_RESPONSES(s, w, turn) lag_coupled_respond(pb, w, s, turn)
 #define LAG_OBEY(s, w) lag_coupled_obey(pb, w, s)
 #define LAG_STRUCK(w) ((w)->contacts.impacts > 0)
+#define LAG_ENOUGH(w, epsilon) lag_contacts_enough(&(w)->contacts, epsilon)
 #define LAG_TERM_SIZE(w, i, rate) lag_joints_size((w)->joints, i, rate)
 #define LAG_KICK_FAILS(t)                                                                                         \
   changes_too_much(pb, t,                                                                                         \

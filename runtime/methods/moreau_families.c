@@ -17,13 +17,16 @@ typedef struct Member {
   int family, row, turn, at;
 } Member;
 
-/* In pb->family, at the begin of the room. */
+/* In pb->family, at the begin of the room. at, jacobian, guess, bound: first the model's own contacts and
+ * constraints, then families'. */
 typedef struct lag_family_rows {
   int most, rows, contacts, entries, parts; /* most: rows; parts: the most numbers that a member reads */
-  lag_contact *at;                          /* [most] */
-  lag_entry *jacobian;                      /* [most*parts] */
+  lag_family_step own;                      /* sizes of the model's own */
+  lag_contact *at;                          /* [own + most] */
+  lag_entry *jacobian;                      /* [own + most*parts] */
   Member *of;                               /* [most] */
-  double *guess, *key;                      /* [most] */
+  double *guess, *key;                      /* [own + most], [most] */
+  char *bound, *tied;                       /* [own + most], [nq] whether constraints hold a coordinate */
   double *q, *v, *z, *out;                  /* of a member */
   double *reach;                            /* [4 families] cut and sides */
   lag_near *near;                           /* [families] */
@@ -45,8 +48,11 @@ static int most_of(const lag_contact_family *f) {
 
 static int members_of(const lag_contact_family *f) { return f->i0 + f->rows - f->j0; }
 
-static void sizes_of(const lag_contact_families *all, lag_family_rows *w) {
+static void sizes_of(const lag_model *m, lag_family_rows *w) {
+  const lag_contact_families *all = m->families;
   w->most = w->parts = 0;
+  w->own = (lag_family_step){.contacts = m->ncontacts - m->nguides};
+  if (m->constraints) w->own.rows = m->constraints->n, w->own.entries = m->constraints->njacobian;
   for (int k = 0; k < all->n; k++) {
     const lag_contact_family *f = &all->of[k];
     w->most += most_of(f) * (1 + f->tangents);
@@ -57,13 +63,15 @@ static void sizes_of(const lag_contact_families *all, lag_family_rows *w) {
 static size_t doubles_of(size_t bytes) { return (bytes + sizeof(double) - 1) / sizeof(double); }
 
 /* Lays out the room, or without one returns its size. */
-static size_t lay_out(const lag_contact_families *all, lag_family_rows *w, double *room) {
+static size_t lay_out(const lag_model *m, lag_family_rows *w, double *room) {
+  const lag_contact_families *all = m->families;
   double *const first = room;
-  sizes_of(all, w);
-  const size_t most = (size_t)w->most + 1, parts = (size_t)w->parts + 1;
+  sizes_of(m, w);
+  const size_t most = (size_t)w->most + 1, parts = (size_t)w->parts + 1, own = (size_t)w->own.contacts;
   size_t used = doubles_of(sizeof *w);
 #define PLACE(to, n) (w->to = first ? (void *)(first + used) : NULL, used += doubles_of((n) * sizeof *w->to))
-  PLACE(at, most), PLACE(jacobian, most * parts), PLACE(of, most), PLACE(guess, most), PLACE(key, most);
+  PLACE(at, own + most), PLACE(jacobian, (size_t)w->own.entries + most * parts), PLACE(of, most);
+  PLACE(guess, own + most), PLACE(key, most), PLACE(bound, own + most), PLACE(tied, (size_t)m->nq);
   PLACE(q, parts), PLACE(v, parts), PLACE(z, parts), PLACE(out, LAG_FAMILY_VALUES + 2 + 3 * parts);
   PLACE(reach, 4 * (size_t)all->n), PLACE(near, (size_t)all->n);
 #undef PLACE
@@ -83,24 +91,39 @@ static size_t lay_out(const lag_contact_families *all, lag_family_rows *w, doubl
 
 size_t lag_families_size(const lag_model *m) {
   lag_family_rows w;
-  return m->families ? lay_out(m->families, &w, NULL) : 0;
+  return m->families ? lay_out(m, &w, NULL) : 0;
 }
 
 int lag_family_rows_of(const lag_model *m) {
   lag_family_rows w = {0};
-  if (m->families) sizes_of(m->families, &w);
+  if (m->families) sizes_of(m, &w);
   return w.most;
 }
 
 int lag_family_parts_of(const lag_model *m) {
   lag_family_rows w = {0};
-  if (m->families) sizes_of(m->families, &w);
+  if (m->families) sizes_of(m, &w);
   return w.parts;
+}
+
+/* The model's own contacts, and the coordinates that its constraints hold. */
+static void place_own(const lag_model *m, lag_family_rows *w) {
+  const lag_constraints *of = m->constraints;
+  for (int i = 0; i < w->own.contacts; i++) w->at[i] = m->contacts[i], w->bound[i] = 1;
+  for (int e = 0; e < w->own.entries; e++) {
+    int held = 1;
+    for (int i = 0; i < m->ncontacts; i++)
+      held &= m->contacts[i].conditional || m->contacts[i].constraint != of->jacobian[e].row;
+    w->jacobian[e] = of->jacobian[e];
+    w->tied[of->jacobian[e].col] |= (char)held;
+  }
 }
 
 void lag_families_begin(lag_problem *pb, double *room) {
   lag_family_rows *w = (lag_family_rows *)(void *)room;
-  if (pb->family != w) lay_out(pb->model->families, w, room);
+  if (pb->family == w) return;
+  lay_out(pb->model, w, room);
+  place_own(pb->model, w);
   pb->family = w;
 }
 
@@ -153,27 +176,35 @@ static int fails(lag_problem *pb, double t, const lag_contact_family *f, const c
   return lag_step_failed(pb, LAG_EMETHOD, t);
 }
 
-/* Appends the rows of a member. */
-static void append(lag_family_rows *w, const lag_contact_family *f, const Member *of, double key) {
+/* Appends the rows of a member. banded: M couples coordinates. */
+static void append(lag_family_rows *w, const lag_contact_family *f, const Member *of, double key, int banded) {
+  lag_contact *const at = w->at + w->own.contacts;
+  lag_entry *const jacobian = w->jacobian + w->own.entries;
+  int bound = banded;
   Member *to = &w->of[w->contacts++];
   *to = *of;
   to->at = w->rows;
+  for (int k = 0; k < f->ncoords; k++) bound |= w->tied[index_of(&f->coords[k], of->row, of->turn)];
   for (int j = 0; j <= f->tangents; j++) {
-    const int row = w->rows++;
-    w->at[row] = (lag_contact){.constraint = row, .is_tangent = j > 0};
+    const int row = w->rows++, constraint = w->own.rows + row;
+    at[row] = (lag_contact){.constraint = constraint, .is_tangent = j > 0};
     w->key[row] = key + j;
-    w->guess[row] = 0;
+    w->bound[w->own.contacts + row] = bound != 0;
     for (int k = 0; k < f->ncoords; k++)
-      w->jacobian[w->entries++] = (lag_entry){row, index_of(&f->coords[k], of->row, of->turn)};
+      jacobian[w->entries++] = (lag_entry){constraint, index_of(&f->coords[k], of->row, of->turn)};
   }
 }
 
 /* Impulses of the step before, of the same members; both lists ascend. */
 static void guess(const lag_problem *pb, lag_family_rows *w) {
+  const int own = w->own.contacts;
+  const double *was = pb->contact_impulse + pb->model->ncontacts;
+  memcpy(w->guess, pb->contact_impulse, (size_t)own * sizeof *w->guess);
   for (int row = 0, k = 0; row < w->rows; row++) {
+    w->guess[own + row] = 0;
     while (k < w->most && pb->contact_key[k] > 0 && pb->contact_key[k] < w->key[row]) k++;
     if (k < w->most && pb->contact_key[k] >= w->key[row] && pb->contact_key[k] <= w->key[row])
-      w->guess[row] = pb->contact_impulse[k];
+      w->guess[own + row] = was[k];
   }
 }
 
@@ -195,6 +226,7 @@ typedef struct Search {
   double t, h;
   const double *mid, *end;
   double key; /* of the first member of the row, from 1 */
+  int banded;
 } Search;
 
 static int look_at(lag_problem *pb, const Search *s, int family, int row, int turn) {
@@ -205,7 +237,7 @@ static int look_at(lag_problem *pb, const Search *s, int family, int row, int tu
   if (does < 0) return fails(pb, s->t, f, "have no finite values");
   if (!does) return 0;
   if (w->rows + f->tangents >= w->most) return fails(pb, s->t, f, "are too many at once: do bodies overlap?");
-  append(w, f, &of, s->key + 3.0 * turn);
+  append(w, f, &of, s->key + 3.0 * turn, s->banded);
   return 0;
 }
 
@@ -231,10 +263,11 @@ static int find_neighbours(lag_problem *pb, int k, const double *q) {
   return rc;
 }
 
-int lag_families_find(lag_problem *pb, double t, double h, const double *mid, const double *end, lag_family_step *to) {
+int lag_families_find(lag_problem *pb, double t, double h, const double *mid, const double *end, int banded,
+                      lag_family_step *to) {
   const lag_contact_families *all = pb->model->families;
   lag_family_rows *w = pb->family;
-  Search s = {t, h, mid, end, 1};
+  Search s = {t, h, mid, end, 1, banded};
   w->rows = w->contacts = w->entries = 0;
   for (int k = 0; k < all->n; k++) {
     const lag_contact_family *f = &all->of[k];
@@ -247,16 +280,14 @@ int lag_families_find(lag_problem *pb, double t, double h, const double *mid, co
     if (rc) return rc;
   }
   guess(pb, w);
-  *to = (lag_family_step){w->contacts, w->rows, w->entries, w->at, w->jacobian, w->guess};
+  *to = (lag_family_step){w->contacts, w->rows, w->entries, w->at, w->jacobian, w->guess, w->bound};
   return 0;
 }
 
 /* --- the kernel's questions --- */
 
-int lag_families_gaps(lag_problem *pb, double t, const double *q, const double *v, const double *z, double *c,
-                      double *r) {
+int lag_families_gaps(lag_problem *pb, double t, const double *q, const double *v, double *c, double *r) {
   const lag_family_rows *w = pb->family;
-  (void)z;
   for (int i = 0; i < w->contacts; i++) {
     const Member *of = &w->of[i];
     const int tangents = pb->model->families->of[of->family].tangents;
@@ -271,7 +302,7 @@ int lag_families_gaps(lag_problem *pb, double t, const double *q, const double *
   return 0;
 }
 
-int lag_families_matrices(lag_problem *pb, double t, const double *y, double *A, double *M) {
+int lag_families_rows(lag_problem *pb, double t, const double *y, double *A) {
   const lag_contact_families *all = pb->model->families;
   const lag_family_rows *w = pb->family;
   int e = 0;
@@ -282,9 +313,10 @@ int lag_families_matrices(lag_problem *pb, double t, const double *y, double *A,
     memcpy(A + e, row_of(w, f, 0), (size_t)n * sizeof *A);
     e += n;
   }
-  const int rc = all->inertia(all, t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, M, pb->work);
-  return rc ? lag_step_refused(pb, rc, t) : 0;
+  return 0;
 }
+
+const char *lag_families_tied(const lag_problem *pb) { return pb->family->tied; }
 
 /* Friction and tangential restitution of the rows, at the places of tangents; static friction at that of a gap. */
 int lag_families_laws(lag_problem *pb, double t, const double *y, double *law) {

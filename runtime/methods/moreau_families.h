@@ -9,22 +9,26 @@
 /* Doubles of room; 0: the model has no families. */
 size_t lag_families_size(const lag_model *m);
 
-/* The contacts of a step: rows of A, each a contact or its tangent; positions of their entries; impulses as a guess. */
+/* The contacts of a step: numbers of families' rows of A, each a contact or its tangent, and of their entries; then,
+ * behind the model's own, contacts, positions of entries, impulses as a guess, whether constraints hold its bodies. */
 typedef struct lag_family_step {
   int contacts, rows, entries;
   const lag_contact *at;
   const lag_entry *jacobian;
   const double *guess;
+  const char *bound;
 } lag_family_step;
 
-/* Finds them, in room of lag_families_size, which lag_families_begin has laid out. */
-int lag_families_find(lag_problem *pb, double t, double h, const double *mid, const double *end, lag_family_step *to);
+/* Finds them, in room of lag_families_size, which lag_families_begin has laid out. banded: M couples coordinates. */
+int lag_families_find(lag_problem *pb, double t, double h, const double *mid, const double *end, int banded,
+                      lag_family_step *to);
 void lag_families_begin(lag_problem *pb, double *room);
+/* [nq] whether constraints hold a coordinate. */
+const char *lag_families_tied(const lag_problem *pb);
 
-/* The kernel's questions about them, as in moreau_contacts.h. */
-int lag_families_gaps(lag_problem *pb, double t, const double *q, const double *v, const double *z, double *c,
-                      double *r);
-int lag_families_matrices(lag_problem *pb, double t, const double *y, double *A, double *M);
+/* The kernel's questions about them, as in moreau_contacts.h; i, c, r, A, law: from the first of families on. */
+int lag_families_gaps(lag_problem *pb, double t, const double *q, const double *v, double *c, double *r);
+int lag_families_rows(lag_problem *pb, double t, const double *y, double *A);
 int lag_families_laws(lag_problem *pb, double t, const double *y, double *law);
 int lag_families_strike(lag_problem *pb, double t, const double *y, int i, double *v);
 

@@ -121,11 +121,13 @@ Model *compiler_model(Compiler *c, const ModelChoice *choice) {
 static int takes_families(const Compiler *c, const Model *m) {
   static const unsigned char knows[CMD_COUNT] = {
       [CMD_CHECK] = 1, [CMD_VERIFY] = 1, [CMD_DERIVE] = 1, [CMD_NOETHER] = 1, [CMD_RUN] = 1, [CMD_PLOT] = 1,
-      [CMD_ANIMATE] = 1, [CMD_SWEEP] = 1, [CMD_BUILD] = 1, [CMD_EMIT] = 1, [CMD_PAGE] = 1};
+      [CMD_ANIMATE] = 1, [CMD_SWEEP] = 1, [CMD_BUILD] = 1, [CMD_EMIT] = 1, [CMD_PAGE] = 1, [CMD_EFFECTS] = 1};
   if (!m->families.n || knows[c->o.command]) return 1;
-  return diag_error(m->diags, m->families.at[0].span, "not yet: families of contacts in `lagc %s`" HELP
-                    "`lagc run`, `lagc build`, `lagc emit` and `lagc page` have them; single contacts, `for i in 1..N "
-                    "{ contact hit[i]: ... }`, stand in all programs", command_find(c->o.command)->name);
+  int embeds = c->o.command == CMD_HEADER || c->o.command == CMD_FMU;
+  return diag_error(m->diags, m->families.at[0].span, "families of contacts in `lagc %s` are not supported%s" HELP
+                    "%ssingle contacts, `for i in 1..N { contact hit[i]: ... }`, stand in all programs",
+                    command_find(c->o.command)->name, embeds ? ", whose programs allocate no lists of neighbours" : "",
+                    embeds ? "`lagc build --shared` makes a library with a C interface; " : "");
 }
 
 Eqns *compiler_derive(Compiler *c, const ModelChoice *choice) {

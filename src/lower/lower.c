@@ -225,6 +225,23 @@ static Slot lower_symbol(Lower *l, Expr e) {
   return 0;
 }
 
+/* floor(a), of a sum with denominators by one division: (i - 1)/10 is whole where i/10 - 1/10 has lost a bit. */
+static Slot lower_floor(Lower *l, Expr a) {
+  enum { MOST = 1 << 20 };
+  Num part = num_int(0);
+  int exact = expr_op(l->g, a) == EX_SUM;
+  for (uint32_t i = 0; exact && i < expr_pairs(l->g, a, EX_SUM); i++) {
+    Num c;
+    expr_pair(l->g, a, EX_SUM, i, &c);
+    exact = num_is_exact(c);
+    if (exact) part = num_gcd(part, c);
+  }
+  if (!exact || part.den > MOST || (part.den & (part.den - 1)) == 0) return call1(l, "floor", lower_slot(l, a));
+  Expr up = expr_scale(l->g, num_int(part.den), a);
+  lower_roots(l, &up, 1);
+  return call1(l, "floor", op(l, IR_DIV, lower_slot(l, up), number(l, num_int(part.den))));
+}
+
 static Slot lower_node(Lower *l, Expr e) {
   ExprGraph *g = l->g;
   Slot held = lower_held_branch(l, e);
@@ -247,7 +264,7 @@ static Slot lower_node(Lower *l, Expr e) {
       return o == EX_SIN || o == EX_COS ? lower_circular(l, o, a) : call1(l, expr_op_text(o), lower_slot(l, a));
     case EX_ABS: return call1(l, "fabs", lower_slot(l, a));
     case EX_SIGN: return op(l, IR_SIGN, lower_slot(l, a), 0);
-    case EX_FLOOR: return call1(l, "floor", lower_slot(l, a));
+    case EX_FLOOR: return lower_floor(l, a);
     case EX_ATAN2: return call2(l, "atan2", e);
     case EX_HYPOT: return call2(l, "hypot", e);
     case EX_MIN: return binary(l, IR_MIN, e);

@@ -73,7 +73,7 @@ Prog *lower_projection(const Eqns *e, uint32_t nrows) { return lower_least_chang
 Prog *lower_guide_loads(const Eqns *e) {
   uint32_t guides = 0, n = e->m->contacts.n;
   for (uint32_t i = 0; i < n; i++) guides += e->m->contacts.at[i].parts > 0;
-  return guides && guides < n ? lower_least_change(e, e->constraints.n, 1) : NULL;
+  return guides && (guides < n || e->m->families.n) ? lower_least_change(e, e->constraints.n, 1) : NULL;
 }
 
 /* The contact of row i of A, if it has a law of impact of its own, or NULL. */

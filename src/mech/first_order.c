@@ -91,7 +91,7 @@ static int add_form(FirstOrderBuilder *w) {
         diag_error(w->m->diags, w->m->lagrangian_span, "the momentum of `%s` depends on the state `%s`",
                    state_of(w, i)->name, w->m->states.at[d.at[k].index].name);
         diag_help(w->m->diags,
-                  "not yet: where L is linear in the velocities, a state can stand in terms without velocities");
+                  "where L is linear in the velocities, a state may stand in terms without velocities only");
         return 0;
       }
       Expr minus = expr_neg(w->g, d.at[k].e);
@@ -297,7 +297,7 @@ static int solve(FirstOrderBuilder *w, Block *b, Expr *rate) {
   if (many || !antisymmetric_solve(w->g, m, b->A, b->b, name, &by)) {
     int all = many || !w->to->closed;
     diag_error(w->m->diags, w->m->lagrangian_span,
-               "not yet: L is linear in the velocities, and its two-form couples too many coordinates: %s",
+               "L is linear in the velocities, and its two-form couples too many coordinates: %s",
                names_of(w, b, all ? NULL : by.left, all ? b->n : by.nleft));
     diag_help(w->m->diags,
               "pairs whose entry cannot vanish are eliminated first: declare signs of parameters, `param G = 1 > 0`");

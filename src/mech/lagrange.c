@@ -294,8 +294,8 @@ static void report_singular(const Eqns *e, const long double *null) {
                "the mass matrix is singular in every state: without inertia: %s; L is linear in these velocities, not "
                "in the others",
                light);
-    diag_help(d, "not yet: Lagrangians of mixed order; give all coordinates inertia, or none, or declare a coordinate "
-                 "that follows at once as a `state` with a `flow`");
+    diag_help(d, "Lagrangians of mixed order are not supported: give all coordinates inertia, or none, or declare a "
+                 "coordinate that follows at once as a `state` with a `flow`");
   } else if (involved == 1) {
     diag_error(d, m->coords.at[last].span, "the mass matrix is singular in every state: `%s` has no inertia%s",
                m->coords.at[last].name, m->constraints.n ? ", and no constraint moves it" : "");

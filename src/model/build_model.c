@@ -521,8 +521,8 @@ static Builder *build_whole(Ast *ast, const ModelChoice *choice, InputRates *rat
   Builder *b = build(ast, choice, 0, rates);
   if (!ast->diags->errors && is_first_order(b->m)) {
     if (b->m->constraints.n)
-      diag_error(b->diags, b->m->constraints.at[0].span, "not yet: constraints and contacts where %s" HELP
-                 "lagc understands the syntax but cannot give it meaning in this version", no_inertia(b->m));
+      diag_error(b->diags, b->m->constraints.at[0].span, "constraints and contacts where %s are not supported" HELP
+                 "insert the constraint into L, or give all coordinates inertia, `m/2*x'^2`", no_inertia(b->m));
     else b = build(ast, choice, 1, rates);
   }
   ask_bracket(b, choice->bracket);

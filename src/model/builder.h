@@ -153,6 +153,7 @@ struct Builder {
   uint32_t nbound;
   int gives_lagrangian; /* the model itself has L, T or V */
   int in_friction; /* lambda(NAME) may stand in the size of a friction */
+  Span force_span; /* of a lambda(NAME) elsewhere; empty: there is none */
   int brackets;    /* {f, g} in an expression is a Poisson bracket */
   int domains;     /* compute Value.domain, for claims */
   uint32_t sums_from; /* sums over at least so many pairs are not written out; 0: none is */
@@ -510,6 +511,8 @@ void add_contact(Builder *b, const AstStmt *st, Name effect);
 int is_contact_family(const Builder *b, const AstStmt *st);
 void add_contact_family(Builder *b, const AstStmt *st, Name effect);
 void check_contact_families(Builder *b);
+/* Whether a family of contacts reads members of the parameter e at its indices. */
+int read_by_contact_family(const Builder *b, const Entity *e);
 /* guide.c: the constraint of a guide; its friction, once all constraints are known. */
 void add_guide(Builder *b, const AstStmt *st, Name effect);
 void add_guide_friction(Builder *b, const AstStmt *st, Name effect, void *data);

@@ -121,8 +121,8 @@ static int read_friction(Work *w, ContactFamily *to, const Value *gap) {
   for (AstId i = w->st->args; i; i = ast_expr(b->ast, i)->next)
     if (strcmp(ast_expr(b->ast, i)->name, "law") == 0)
       return diag_error(b->diags, ast_expr(b->ast, i)->span,
-                        "not yet: `law` of a family of contacts, which moreau follows" HELP
-                        "write `for i in 1..N { contact ... }`: dop853 follows contacts one by one");
+                        "`law` of a family of contacts is not supported: moreau, which follows it, has a law of its own"
+                        HELP "leave it out, or write single contacts, `for i in 1..N { contact ... }`, for dop853");
   AstId id = ast_option_value(b->ast, w->st, "slip"), most = ast_option_value(b->ast, w->st, "static");
   Value slip = evaluate(w, id);
   to->friction = option(w, "friction", zero);
@@ -138,15 +138,26 @@ static int read_friction(Work *w, ContactFamily *to, const Value *gap) {
 
 /* --- reads --- */
 
+/* Whether a symbol is the same for all members: a plain name, or one member of a family that is not read at i or j. */
+static int is_same_for_all(const Work *w, const Symbol *s, int is_coord) {
+  int same = 1;
+  for (uint32_t k = 0; k < w->q.reads.n; k++) {
+    const Entity *e = w->q.reads.at[k].e;
+    same &= (e->kind == ENT_COORD) != is_coord || s->index < e->index || s->index >= e->index + entity_size(e);
+  }
+  return same || quantified_is_plain(s);
+}
+
 static int add_read(Work *w, ContactFamily *to, const Symbol *s) {
   Builder *b = w->b;
   int64_t part = 0;
   const Read *r = quantified_read_of(&w->q, s, &part);
   int is_coord = s->kind == SYM_COORD || s->kind == SYM_VEL;
-  if (s->kind == SYM_TIME || s->kind == SYM_CONST || (s->kind == SYM_PARAM && !r && quantified_is_plain(s))) return 1;
+  if (s->kind == SYM_TIME || s->kind == SYM_CONST) return 1;
+  if (s->kind == SYM_PARAM && !r && is_same_for_all(w, s, 0)) return 1;
   if (!is_coord && s->kind != SYM_PARAM)
     return refuse_family(w, w->st->lhs, "contacts of a family contain coordinates, velocities, parameters and time");
-  if (!r && !(is_coord && quantified_is_plain(s)))
+  if (!r && !(is_coord && is_same_for_all(w, s, 1)))
     return refuse_family(w, w->st->lhs, arena_printf(b->arena, "`%s` is no member at indices of this family", s->name));
   Affine at = {.first = s->index};
   if (r) {
@@ -220,18 +231,28 @@ void add_contact_family(Builder *b, const AstStmt *st, Name effect) {
     vec_push(b->arena, &b->m->families, to);
 }
 
+int read_by_contact_family(const Builder *b, const Entity *e) {
+  for (uint32_t k = 0; k < b->m->families.n; k++) {
+    const ContactFamily *f = &b->m->families.at[k];
+    for (uint32_t i = 0; i < f->params.n; i++) {
+      uint32_t read = expr_symbol(b->g, f->params.at[i].symbol)->index;
+      if (read >= e->index && read < e->index + entity_size(e)) return 1;
+    }
+  }
+  return 0;
+}
+
 void check_contact_families(Builder *b) {
   const Model *m = b->m;
   if (!m->families.n || b->diags->errors) return;
-  if (m->constraints.n)
-    diag_error(b->diags, m->constraints.at[0].span,
-               "not yet: constraints and single contacts beside a family of contacts" HELP
-               "write a single contact as a family, `contact floor[i in 1..1]: ...`");
+  if (b->force_span.end)
+    diag_error(b->diags, b->force_span, "forces beside a family of contacts are not supported: its impulses would be "
+               "missing from them" HELP "write single contacts, `for i in 1..N { contact ... }`");
   for (uint32_t k = 0; k < m->families.n; k++)
     for (uint32_t i = 0; i < m->families.at[k].params.n; i++) {
       const Param *p = &m->params.at[expr_symbol(b->g, m->families.at[k].params.at[i].symbol)->index];
       if (p->fixed)
-        diag_error(b->diags, m->families.at[k].span, "not yet: `%s` of a family of contacts as a number" HELP
+        diag_error(b->diags, m->families.at[k].span, "`%s` of a family of contacts as a number is not supported" HELP
                    "leave it out of --fix", p->name);
     }
   if (m->scene.method && strcmp(m->scene.method, "moreau") != 0)

@@ -188,46 +188,62 @@ static void declare_function(Builder *b, const AstStmt *st, Name effect) {
   add_definition(b, ENT_FUNCTION, (Definition){.stmt = st, .name = st->name, .effect = effect});
 }
 
-static void declare_observe(Builder *b, const AstStmt *st, Name effect) {
-  Model *m = b->m;
-  Output o = {.name = st->name, .span = st->name_span};
-  if (st->dims) {
-    IndexRange r;
-    uint32_t family = resolve_indices(b, st->dims, effect, &r) ? family_of(b, st, effect, ENT_OBSERVE, &r) : 0;
-    if (!family || !declare_member(b, st, family, r.lo, m->observes.n, &o.name)) return;
-  } else if (!declare_name(b, st, effect, ENT_OBSERVE, m->observes.n)) {
-    return;
-  }
-  o.unit = unit_resolve(&st->unit, b->dims, b->diags, b->arena);
-  vec_push(b->arena, &m->observes, o);
+/* Adds the observable `name`, with the indices around it. */
+static void add_observe(Builder *b, const AstStmt *st, Name effect, Name name) {
+  Output o = {.name = name, .span = st->name_span, .unit = unit_resolve(&st->unit, b->dims, b->diags, b->arena)};
+  vec_push(b->arena, &b->m->observes, o);
   IndexVar *around = ARENA_ARRAY(b->arena, IndexVar, b->index.n + 1);
   if (b->index.n) memcpy(around, b->index.at, b->index.n * sizeof *around);
   add_definition(b, ENT_OBSERVE,
-                 (Definition){.stmt = st, .name = o.name, .effect = effect, .around = around, .naround = b->index.n});
+                 (Definition){.stmt = st, .name = name, .effect = effect, .around = around, .naround = b->index.n});
 }
 
-/* 1 if a momentum beside L has the size of its coordinate; otherwise reported. */
-static int names_a_momentum(Builder *b, const AstStmt *st, Name effect) {
+static void declare_observe(Builder *b, const AstStmt *st, Name effect) {
+  Name name = st->name;
+  if (st->dims) {
+    IndexRange r;
+    uint32_t family = resolve_indices(b, st->dims, effect, &r) ? family_of(b, st, effect, ENT_OBSERVE, &r) : 0;
+    if (!family || !declare_member(b, st, family, r.lo, b->m->observes.n, &name)) return;
+  } else if (!declare_name(b, st, effect, ENT_OBSERVE, b->m->observes.n)) {
+    return;
+  }
+  add_observe(b, st, effect, name);
+}
+
+/* 1 if a momentum p beside L has the size of its coordinate; otherwise reported. */
+static int names_a_momentum(Builder *b, const AstStmt *st, Name effect, Entity *p) {
   const AstExpr *of = ast_expr(b->ast, st->lhs);
   const Entity *q = resolve_name(b, of->name, of->span, effect, "coord");
-  Entity p = {.name = st->name};
-  return q && read_type(b, st, effect, &p.parts) && pair_fits(b, st, &p, q);
+  uint8_t parts;
+  return q && read_type(b, st, effect, &parts) && read_family(b, st, effect, ENT_OBSERVE, 0, parts, p) &&
+         pair_fits(b, st, p, q);
+}
+
+/* Observables p[1], ... of a family whose Lagrangian is given; their text reads _i and _j. */
+static void declare_momenta(Builder *b, const AstStmt *st, Name effect, const Entity *p) {
+  IndexRange r = entity_range(p);
+  uint32_t family = family_of(b, st, effect, ENT_OBSERVE, &r), outer = b->index.n;
+  int64_t at[2] = {p->lo[0], p->lo[1]};
+  Name name;
+  do {
+    if (!family || !declare_member(b, st, family, at, b->m->observes.n, &name)) return;
+    for (int k = 0; k < p->ndims; k++)
+      vec_push(b->arena, &b->index, ((IndexVar){intern(b->ast->names, k ? "_j" : "_i"), at[k]}));
+    add_observe(b, st, effect, name);
+    b->index.n = outer;
+  } while (next_member(p, at));
 }
 
 /* A coordinate of the phase space where the model gives H; where it gives L, an observable dL/dq'. */
 void declare_momentum(Builder *b, const AstStmt *st, Name effect, void *data) {
   (void)data;
+  Entity p = {0};
   if (st->kind != STMT_MOMENTUM) return;
   if (b->m->hamiltonian) {
     declare_motion(b, st, effect);
-  } else if (st->dims) {
-    diag_error(b->diags, st->name_span,
-               "not yet: names for the momenta of a family whose Lagrangian is given" HELP
-               "they are called `%s[1]` and so on",
-               ast_expr(b->ast, st->rhs)->name);
-    declare_refused(b, st, effect);
-  } else if (b->gives_lagrangian && names_a_momentum(b, st, effect)) {
-    declare_observe(b, st, effect);
+  } else if (b->gives_lagrangian && names_a_momentum(b, st, effect, &p)) {
+    if (p.ndims) declare_momenta(b, st, effect, &p);
+    else declare_observe(b, st, effect);
   } else {
     declare_refused(b, st, effect);
   }

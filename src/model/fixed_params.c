@@ -47,6 +47,20 @@ static int names_param(const Builder *b, const char *word) {
   return e && e->kind == ENT_PARAM;
 }
 
+/* Leaves parameters whose members families of contacts read at indices; a note names the first. */
+static void leave_indexed(Builder *b) {
+  Name first = NULL;
+  for (uint32_t i = 0; i < b->scope.all.n; i++) {
+    const Entity *x = &b->scope.all.at[i];
+    if (x->kind != ENT_PARAM || !read_by_contact_family(b, x)) continue;
+    for (uint32_t k = 0; k < entity_size(x); k++) b->m->params.at[x->index + k].fixed = 0;
+    first = first ? first : x->name;
+  }
+  if (first)
+    diag_note(b->diags, (Span){0},
+              "--fix all leaves `%s` a parameter: a family of contacts reads its members in a loop", first);
+}
+
 /* Sets Param.fixed for a comma-separated list; parameters of effects that are off are skipped. 0 on a mistake,
  * reported. */
 static int mark(Builder *b, const char *words) {
@@ -57,9 +71,10 @@ static int mark(Builder *b, const char *words) {
     int off = 0;
     const Entity *e = NULL;
     s += n + strspn(s + n, ", ");
-    if (strcmp(word, "all") == 0 && !names_param(b, word))
+    if (strcmp(word, "all") == 0 && !names_param(b, word)) {
       for (uint32_t i = 0; i < b->m->params.n; i++) b->m->params.at[i].fixed = 1;
-    else if (n && (e = find_param(b, word, &off)) != NULL)
+      leave_indexed(b);
+    } else if (n && (e = find_param(b, word, &off)) != NULL)
       for (uint32_t i = 0; i < entity_size(e); i++) b->m->params.at[e->index + i].fixed = 1;
   }
   return b->diags->errors == errors;

@@ -77,9 +77,6 @@ int pair_fits(Builder *b, const AstStmt *st, const Entity *p, const Entity *q) {
     if (b->m->pairs.at[i].p == q->index) return diag_error(b->diags, span, "`%s` is a momentum itself", q->name);
     if (b->m->pairs.at[i].q == q->index) return diag_error(b->diags, span, "`%s` has two momenta", q->name);
   }
-  if (p->ndims > 1)
-    return diag_error(b->diags, st->name_span,
-                      "not yet: momenta of a family with two indices" HELP "declare a family with one index");
   int same = p->parts == q->parts && p->ndims == q->ndims;
   for (int k = 0; same && k < p->ndims; k++) same = p->hi[k] == q->hi[k];
   if (same) return 1;

@@ -5,14 +5,14 @@ const char *reason_against_brackets(const Model *m) {
   if (!m->lagrangian)
     return "a bracket needs coordinates and momenta, and the model has no Lagrangian" HELP
            "a Hamiltonian is given by `hamiltonian = ...`";
-  if (m->contacts.n)
-    return "not yet: brackets of a model with contacts" HELP
+  if (m->contacts.n || m->families.n)
+    return "brackets of a model with contacts are not supported" HELP
            "let an event reflect it: `event bounce: y falling { y' = -e*y' }`";
   if (m->constraints.n)
-    return "not yet: brackets of a model with constraints, which are Dirac's" HELP
+    return "brackets of a model with constraints, which are Dirac's, are not supported" HELP
            "use coordinates without constraints";
   if (m->first_order && !m->hamiltonian)
-    return "not yet: brackets where L is linear in the velocities" HELP
+    return "brackets where L is linear in the velocities are not supported" HELP
            "give the model's Hamiltonian: `momentum p of x`, `hamiltonian = ...`";
   for (uint32_t i = 0; i < m->states.n; i++)
     if (!m->states.at[i].coordinate)

@@ -136,7 +136,8 @@ static Value call_d(Eval *ev, const AstExpr *x) {
   Value r = {.dim = dim_div(b->dims, v->dim, w->dim), .n = v->n};
   for (uint32_t k = 0; k < component_count(v); k++) {
     if (kind != SYM_LOCAL && expr_contains(b->g, v->at[k], is_local, NULL))
-      return refuse(b, x->span, "not yet: a partial derivative of the energy, or of the arguments of a function" HELP
+      return refuse(b, x->span,
+                    "a partial derivative of the energy, or of the arguments of a function, is not supported" HELP
                     "differentiate `T` and `V`, or `lagrangian`; of a function, its value: `d(f(x), x)`");
     r.at[k] = expr_diff(b->g, v->at[k], expr_sym_id(b->g, w->e));
   }

@@ -77,6 +77,7 @@ Value multiplier_value(Eval *ev, const AstExpr *x) {
         "> 0`; friction that follows it is `friction NAME on s: mu*abs(lambda(rail))`, or a guide, `guide rail: y = 0, "
         "friction = mu`");
   Span span = ast_expr(b->ast, x->args)->span;
+  if (!b->in_friction) b->force_span = x->span;
   uint32_t errors = b->diags->errors;
   Name owner = NULL, name = named_constraint(ev, x->args, &owner);
   int ambiguous = 0;

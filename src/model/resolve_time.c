@@ -72,7 +72,8 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
     return refuse(b, span, "inputs and closed forms have no time derivative" HELP
                   "a velocity has a closed form of its own: `exact x' = ...`, and then `error(x')`");
   if (kinds & 1u << SYM_INPUT && !want_rates(b, &of))
-    return refuse(b, span, "not yet: a third time derivative of an input");
+    return refuse(b, span, "a third time derivative of an input is not supported" HELP
+                  "a `let` of t has all: `let u = sin(t)` in the place of `input u = sin(t)`");
   if (kinds & second && !(kinds & 1u << SYM_ACC))
     return refuse(
         b, span,
@@ -86,7 +87,8 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
   if (kinds & 1u << SYM_LOCAL && has_no_rate(b, &of))
     return refuse(
         b, span,
-        "not yet: a time derivative of the energy, a charge or an action, or a third one of a function's argument" HELP
+        "a time derivative of the energy, a charge or an action, or a third one of a function's argument, is not "
+        "supported" HELP
         "the energy changes by the power of forces: `force x = F` adds the power `F*x'`");
   Value r = {.dim = dim_per_second(b->dims, of.dim), .n = of.n};
   const Expr *seed = time_seeds(b);

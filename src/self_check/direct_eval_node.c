@@ -184,9 +184,17 @@ static TextValue entity(DirectEval *t, Frame *f, const Entity *e, const int64_t 
   return NOTHING;
 }
 
-/* Value of a name with indices `at`; of a family without indices, member t->member. */
+/* Member t->member of a family that is named without indices; NULL: the family has none, as x of x[i,1] in q[i]. */
+static const int64_t *output_member(const DirectEval *t, const Entity *e) {
+  const int64_t *at = t->member;
+  for (int k = 0; k < e->ndims && at; k++)
+    if (at[k] < e->lo[k] || at[k] > e->hi[k]) at = NULL;
+  return at;
+}
+
+/* Value of a name with indices `at`, or without. */
 static TextValue named(DirectEval *t, Frame *f, const Entity *e, const int64_t *at) {
-  const int64_t *which = e->ndims ? at ? at : t->member : NULL;
+  const int64_t *which = e->ndims ? at ? at : output_member(t, e) : NULL;
   if (e->ndims && !which) return NOTHING;
   const Entity *member =
       e->ndims && (e->kind == ENT_LET || e->kind == ENT_OBSERVE) ? find_member(t->b->ast, &t->b->members, e, which) : e;

@@ -398,7 +398,8 @@ TextOutputs *text_outputs(const Model *m, int samples, Arena *a) {
   for (uint32_t i = 0; i < m->events.n; i++) vec_push(a, &roots, o->events[i]);
   for (uint32_t i = 0; i < o->actions.n; i++) vec_push(a, &roots, o->actions.at[i].value);
   for (uint32_t i = 0; i < o->members.n; i++)
-    for (uint32_t k = 0; k < 6; k++) vec_push(a, &roots, o->members.at[i].value[k]);
+    for (size_t k = 0; k < sizeof o->members.at->value / sizeof *o->members.at->value; k++)
+      vec_push(a, &roots, o->members.at[i].value[k]);
   for (uint32_t i = 0; i < noutputs; i++) vec_push(a, &roots, o->outputs[i]);
   for (uint32_t i = 0; i < m->inputs.n; i++) vec_push(a, &roots, o->signals[i]);
   tape_finish(o->tape, roots.at, roots.n);

@@ -145,6 +145,19 @@ AstId ast_reduce(Ast *ast, AstKind kind, Span span, Span op, AstTurns over, AstI
                                .b = over.hi, .c = body});
 }
 
+AstId ast_copy(Ast *ast, AstId id) {
+  AstId from = ast_expr(ast, id)->first, by = ast->exprs.n - from;
+  for (AstId k = from; k <= id; k++) {
+    AstExpr e = *ast_expr(ast, k);
+    AstId *const links[] = {&e.a, &e.b, &e.c, &e.args, &e.next, &e.first};
+    for (size_t i = 0; i < sizeof links / sizeof *links; i++)
+      if (*links[i]) *links[i] += by;
+    if (k == id) e.next = 0;
+    vec_push(ast->arena, &ast->exprs, e);
+  }
+  return id + by;
+}
+
 AstId ast_collect(Ast *ast, AstKind kind, Span span, AstList items) {
   return append(ast, (AstExpr){.kind = kind, .span = span, .op_span = span, .args = items.first});
 }

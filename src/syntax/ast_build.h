@@ -41,6 +41,8 @@ typedef struct AstTurns {
   Ident index;
   AstId lo, hi;
 } AstTurns;
+/* Copy of an expression, behind all others. */
+AstId ast_copy(Ast *ast, AstId id);
 AstId ast_reduce(Ast *ast, AstKind kind, Span span, Span op, AstTurns over, AstId body);
 /* near_sum.c: sum(index in near(...), body); range: the expression behind `in`. */
 AstId ast_near(Ast *ast, Span span, Ident index, AstId range, AstId body, Span op);

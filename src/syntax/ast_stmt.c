@@ -106,29 +106,44 @@ AstStmt *stmt_coord(Ast *ast, AstStmtKind kind, Span span, AstDeclared of, int p
   return s;
 }
 
-/* A name, or its member [_i]. */
-static AstId member_of(Ast *ast, Ident name, const Ident *index) {
+/* Index k of a momentum's family. */
+static Ident index_of(Ast *ast, Span span, int k) { return (Ident){intern(ast->names, k ? "_j" : "_i"), span}; }
+
+/* A name, or its member [_i], [_i,_j]. */
+static AstId member_of(Ast *ast, Ident name, int n) {
   AstId id = ast_name(ast, name);
-  return index ? ast_index(ast, name.span, id, ast_list(ast_name(ast, *index))) : id;
+  AstList at = {0};
+  for (int k = 0; k < n; k++) {
+    AstId one = ast_name(ast, index_of(ast, name.span, k));
+    at = k ? ast_list_add(ast, at, one) : ast_list(one);
+  }
+  return n ? ast_index(ast, name.span, id, at) : id;
 }
 
-/* p*q', dot(p, q') of vectors, summed over the members of a family of `size`. */
-static AstId action_term(Ast *ast, Span span, Ident p, Ident q, AstId size, int is_vector) {
-  Ident i = {intern(ast->names, "_i"), span}, dot = {intern(ast->names, "dot"), span};
-  AstId lo = size ? ast_number(ast, span, num_int(1)) : 0;
-  AstId momentum = member_of(ast, p, size ? &i : NULL), coord = member_of(ast, q, size ? &i : NULL),
-        rate = ast_prime(ast, q.span, q.span, coord), term;
+/* p*q', dot(p, q') of vectors, summed over the members of a family with n sizes. */
+static AstId action_term(Ast *ast, Span span, const Ident of[2], AstId size, int n, int is_vector) {
+  Ident dot = {intern(ast->names, "dot"), span};
+  AstTurns over[2];
+  for (int k = 0; k < n; k++, size = ast_expr(ast, size)->next) { /* as in a text: nodes follow one another */
+    AstId lo = ast_number(ast, span, num_int(1));
+    over[k] = (AstTurns){index_of(ast, span, k), lo, ast_copy(ast, size)};
+  }
+  AstId momentum = member_of(ast, of[0], n), coord = member_of(ast, of[1], n),
+        rate = ast_prime(ast, of[1].span, of[1].span, coord), term;
   if (is_vector) term = ast_call(ast, span, dot, ast_list_add(ast, ast_list(momentum), rate));
   else term = ast_binary(ast, AST_MUL, span, span, momentum, rate);
-  return size ? ast_reduce(ast, AST_SUM, span, span, (AstTurns){i, lo, size}, term) : term;
+  while (n-- > 0) term = ast_reduce(ast, AST_SUM, span, span, over[n], term);
+  return term;
 }
 
 AstStmt *stmt_momentum(Ast *ast, Span span, Ident name, AstList dims, Ident type, Ident coord, AstUnit unit) {
   AstStmt *s = stmt_coord(ast, STMT_MOMENTUM, span, (AstDeclared){name, type, dims, unit}, 0);
-  /* first: an expression's nodes follow one another */
-  s->args = action_term(ast, span, name, coord, dims.first, type.name != NULL);
+  const Ident pair[] = {name, coord},
+              own = {intern(ast->names, arena_printf(ast->arena, "p_%s", coord.name)), coord.span};
+  int n = !dims.first ? 0 : dims.first == dims.last ? 1 : 2; /* a third index is reported elsewhere */
+  s->args = action_term(ast, span, pair, dims.first, n, type.name != NULL);
   s->lhs = ast_name(ast, coord);
-  s->rhs = ast_name(ast, (Ident){intern(ast->names, arena_printf(ast->arena, "p_%s", coord.name)), coord.span});
+  s->rhs = member_of(ast, own, n);
   return s;
 }
 

@@ -11,20 +11,6 @@
 
 static AstExpr *at(Ast *ast, AstId id) { return &ast->exprs.at[id]; }
 
-/* Copy of an expression, behind all others. */
-static AstId copy(Ast *ast, AstId id) {
-  AstId from = ast_expr(ast, id)->first, by = ast->exprs.n - from;
-  for (AstId k = from; k <= id; k++) {
-    AstExpr e = *ast_expr(ast, k);
-    AstId *const links[] = {&e.a, &e.b, &e.c, &e.args, &e.next, &e.first};
-    for (size_t i = 0; i < sizeof links / sizeof *links; i++)
-      if (*links[i]) *links[i] += by;
-    if (k == id) e.next = 0;
-    vec_push(ast->arena, &ast->exprs, e);
-  }
-  return id + by;
-}
-
 static AstId error(Ast *ast, Span span, const char *what) {
   diag_error(ast->diags, span, "%s" HELP "write " USE, what);
   return ast_collect(ast, AST_ERROR, span, (AstList){0, 0});
@@ -91,7 +77,7 @@ static AstId side_of(Ast *ast, const Request *r, uint32_t c) {
   AstId side = r->box;
   if (ast_expr(ast, side)->kind == AST_TUPLE)
     for (side = ast_expr(ast, side)->args; c && ast_expr(ast, side)->next; c--) side = ast_expr(ast, side)->next;
-  return copy(ast, side);
+  return ast_copy(ast, side);
 }
 
 /* The square of a difference of coordinates, by the nearest image. */
@@ -140,10 +126,10 @@ AstId ast_near(Ast *ast, Span span, Ident j, AstId call, AstId body, Span op) {
   if (wrong) return error(ast, r.span, wrong);
   AstNear near = {.span = r.span, .i = r.i.name};
   AstId d2 = distance(ast, &r, &near);
-  near.cut = copy(ast, r.cut);
+  near.cut = ast_copy(ast, r.cut);
   AstId cut2 = ast_binary(ast, AST_POW, r.span, r.span, near.cut, ast_number(ast, r.span, num_int(2)));
   near.test = ast_binary(ast, AST_LT, r.span, r.span, d2, cut2);
-  AstList list = ast_list_add(ast, ast_list(near.test), copy(ast, body));
+  AstList list = ast_list_add(ast, ast_list(near.test), ast_copy(ast, body));
   list = ast_list_add(ast, list, ast_number(ast, r.span, num_int(0)));
   AstId term = ast_call(ast, ast_expr(ast, body)->span, (Ident){intern(ast->names, "if"), r.span}, list);
   clear(ast, ast_expr(ast, body)->first, body);
@@ -159,7 +145,7 @@ AstId ast_near_bind(Ast *ast, Span span, Ident j, AstId call) {
   if (wrong) return error(ast, r.span, wrong);
   AstNear near = {.span = r.span, .i = r.i.name};
   distance(ast, &r, &near);
-  near.cut = copy(ast, r.cut);
+  near.cut = ast_copy(ast, r.cut);
   AstId from = make_range(ast, call);
   near.sum = ast_bind(ast, span, j, from, call);
   vec_push(ast->arena, &ast->nears, near);

@@ -124,6 +124,6 @@ check "in an event" refused "cannot stand in the equations" "event e: action(x) 
 check "in a claim" refused "has its value in a run only" "expect action(x) = 1"
 check "in a claim by its name" refused "has its value in a run only" "observe J = action(x)
 expect J = 1"
-check "its rate" refused "not yet: a time derivative of the energy, a charge or an action" "observe J = (action(x))'" "output J"
-check "constraints" has "an action variable needs a phase space, as brackets do: not yet" "$LAGC" run models/cartesian_pendulum.lag --observe 'action(x)'
+check "its rate" refused "a time derivative of the energy, a charge or an action" "observe J = (action(x))'" "output J"
+check "constraints" has "an action variable needs a phase space, as brackets do: brackets of a model" "$LAGC" run models/cartesian_pendulum.lag --observe 'action(x)'
 tap_end

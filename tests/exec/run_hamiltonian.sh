@@ -205,4 +205,33 @@ check "charges are found, and their brackets" sh -c '"$0" noether "$1" | grep -q
 printf "model hu\ncoord x [m]\ninput u [m] = 0.1 [m]*sin(2 [1/s]*t)\nparam m = 1 [kg]\nmomentum p of x\nhamiltonian = p^2/(2*m) + p*u%s\nscene s { start x = 1; span 1; output x }\n" "'" >"$TMP/hu.lag"
 "$LAGC" run "$TMP/hu.lag" --json >"$TMP/out" 2>"$TMP/err"
 check "H = p^2/(2 m) + p u': x follows u" close_to "$(sed "s/.*\"final\": {//" "$TMP/out" | sed -n "s/.*\"x\": \([-0-9.e]*\).*/\1/p")" 1.0909297426825682 1e-9
+# ---- a family with two indices: oscillators with the frequencies i + 2 j
+cat >"$TMP/lattice.lag" <<'END'
+model lattice
+const N = 2, K = 3
+coord x[N,K]
+momentum p[N,K] of x
+hamiltonian = sum(i in 1..N, sum(j in 1..K, p[i,j]^2/2 + (i + 2*j)^2*x[i,j]^2/2))
+observe q[i in 1..N] = 2*x[i,3]
+scene s { start x = 1, p[1,2] = 5; span 1; tolerance 1e-12; output x, p, q }
+END
+"$LAGC" run "$TMP/lattice.lag" -o "$TMP/lattice.csv" >"$TMP/out" 2>&1
+at_end() { tail -1 "$TMP/lattice.csv" | cut -d , -f "$1"; } # t, x[1,1], ..., x[2,3], p, q
+check "x[2,3] is cos(8 t)" close_to "$(at_end 7)" "$(awk 'BEGIN { printf "%.17g", cos(8) }')" 1e-10
+check "x[1,2] with its momentum is cos(5 t) + sin(5 t)" close_to "$(at_end 3)" "$(awk 'BEGIN { printf "%.17g", cos(5) + sin(5) }')" 1e-10
+check "observables of one index read those of two" close_to "$(at_end 15)" "$(awk 'BEGIN { printf "%.17g", 2*cos(8) }')" 1e-10
+
+# ---- names for momenta of families whose Lagrangian is given: m x', twice (i + 10 j) u', i r' and a term of another
+cat >"$TMP/names.lag" <<'END'
+model names
+const N = 3, K = 2
+coord x[N], u[N,K], r[N]: vec2
+momentum p[N] of x, w[N,K] of u, s[N]: vec2 of r
+param m = 2
+lagrangian = sum(i in 1..N, m*x[i]'^2/2 - x[i]^2/2 + dot(r[i]', r[i]')/2*i + r[i].x'*x[1] + sum(j in 1..K, (i + 10*j)*u[i,j]'^2))
+scene z { start x = 1, x[2]' = 3, u[3,2]' = 1, r[2]' = (1, 2); span 1; output p, w, s[2] }
+END
+named() { "$LAGC" run "$TMP/names.lag" --quiet -o "$TMP/names.csv" && sed -n 2p "$TMP/names.csv"; }
+is "momenta of families have names" "0,0,6,0,0,0,0,0,0,46,3,4" "$(named)"
+
 tap_end

@@ -413,4 +413,21 @@ check "a member without a value has a message" says_zero
 sed 's|sin(1.7\*i) + m\*pi|sqrt(i - m)|; /start x.3./d' "$TMP/family.lag" >"$TMP/family1.lag"
 says_member() { "$LAGC" run "$TMP/family1.lag" --quiet >/dev/null 2>"$TMP/said" || grep -q 'the start of `x\[1\]` is not finite' "$TMP/said"; }
 check "and so has one whose parameters have none" says_member
+
+# ---- rows of ten by one formula: member 41 is the first of the fifth, though 4.1 - 0.1 is below 4 in doubles
+cat >"$TMP/rows.lag" <<'END'
+model rows
+const N = 400, K = 10
+coord r[N]: vec2
+param s = 1
+lagrangian = sum(i in 1..N, dot(r[i]', r[i]')/2)
+scene s { start r[i in 1..N] = (s*(i - 1 - K*floor((i - 1)/K)), s*floor((i - 1)/K)); span 1; method rk4(step = 1); output r }
+END
+rows() {
+  "$LAGC" run "$TMP/rows.lag" --compile "$1" --quiet -o "$TMP/rows.csv" || return 1
+  awk -F, 'NR == 2 { for (i = 1; i <= 400; i++) if ($(2*i) != (i - 1) % 10 || $(2*i + 1) != int((i - 1)/10)) { print "member " i; exit 1 } }' "$TMP/rows.csv"
+}
+loops() { "$LAGC" emit "$TMP/rows.lag" -o "$TMP/rows.c" && grep -q "floor)" "$TMP/rows.c"; }
+check "a formula of indices is a loop" loops
+for how in never always; do check "rows of ten, compiled: $how" rows "$how"; done
 tap_end

@@ -5,8 +5,10 @@
 
 # Messages that other suites show, by a part of their text.
 elsewhere='internal error
-not yet: families of contacts in
-`lagc run`, `lagc build`, `lagc emit` and `lagc page` have them
+families of contacts in
+single contacts, `for i in 1..N { contact hit
+whose programs allocate no lists of neighbours
+`lagc build --shared` makes a library with a C interface
  --bytes
 of a family of contacts as a number
 leave it out of --fix
@@ -33,7 +35,7 @@ begin elsewhere, as with'
 
 # The texts in the calls that report, one a line, as FILE:LINE<tab>TEXT; texts that are not sentences are left out.
 texts() {
-  awk -v calls='(diag_error|diag_warning|not_yet|unit_bad|report_count|refuse_point)[(]' '
+  awk -v calls='(diag_error|diag_warning|unit_bad|report_count|refuse_point)[(]' '
     # Literals side by side are one text.
     function literals(call,   text, in_text, c, i) {
       for (i = 1; i <= length(call); i++) {
