@@ -88,6 +88,18 @@ typedef struct {
   Span span;
 } SpinStart;
 
+/* A setting in a scene of n numbers of a family. */
+typedef struct {
+  AstId lhs;
+  uint32_t n;
+} MemberSetting;
+
+/* A family with members set in the scene; by[i]: index + 1 of the last setting of number i in Builder.settings. */
+typedef struct {
+  Name name, effect;
+  uint32_t parts, primes, *by;
+} GivenFamily;
+
 /* A name that only the statement being read knows. */
 typedef struct {
   Name name;
@@ -146,6 +158,9 @@ struct Builder {
   const AstStmt **chain; /* the scene after its `like` ancestors, oldest first; NULL-terminated */
   int is_variant;  /* ModelChoice.only is given */
   int is_giving;   /* ModelChoice.given is being applied */
+  int in_scene;    /* statements of a scene are being applied; the settings so far of one scene of the chain: */
+  VEC(MemberSetting) settings;
+  VEC(GivenFamily) given;
   int is_measuring; /* a measure is being read */
   int unitless;    /* no name of the model has a unit: dimensions are not checked */
   /* [nbound] the group parameter of the symmetry being read; the new variables of a canonical transformation */
@@ -520,6 +535,8 @@ void add_canonical(Builder *b, const AstStmt *st);
 void check_names_once(Builder *b, const FileIndex *file);
 void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Span span);
 void check_set_once(Builder *b, const AstStmt *block);
+/* In a scene: records the members r as set; reports those set before by a setting that is not the wider one. */
+void check_members_kept(Builder *b, const Target *p, const Entity *e, const IndexRange *r, AstId lhs);
 
 /* event.c: adds an event, or a section; resolves a value assigned to a coordinate, a state, or the rate of one,
  * whose name is declared in `unit`; reports different shapes. */

@@ -52,30 +52,8 @@ static Name setting_key(Builder *b, const AstStmt *st, const char *owner) {
   }
 }
 
-/* A setting of all members after one of some, `start x[3] = 5, x = 1`, which it would replace. */
-static void check_general_first(Builder *b, Scope *said, const AstStmt *st, const char *owner) {
-  if (st->kind != STMT_START && st->kind != STMT_SET) return;
-  int some = 0, primes = 0;
-  AstId id = st->lhs;
-  for (;; id = ast_expr(b->ast, id)->a) {
-    const AstExpr *x = ast_expr(b->ast, id);
-    int of_member = x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_INDEX;
-    if (x->kind != AST_PRIME && x->kind != AST_INDEX && !of_member) break;
-    some |= x->kind == AST_INDEX;
-    primes += x->kind == AST_PRIME;
-  }
-  Name key = intern_printf(b, "some of %s%s%d", owner, ast_text(b, id), primes);
-  const Entity *old = scope_own(said, key, NULL);
-  if (some && !old) scope_add(said, (Entity){.name = key, .span = st->span});
-  if (some || !old) return;
-  diag_error(b->diags, st->span, "`%s` is given to all members after one of them, whose value is lost" HELP
-             "write it before the member's", ast_text(b, st->lhs));
-  diag_also(b->diags, old->span, "the member's value");
-}
-
 static void check_setting(Builder *b, Scope *said, const AstStmt *st, const char *owner) {
   Name key = setting_key(b, st, owner);
-  check_general_first(b, said, st, owner);
   const Entity *old = key ? scope_own(said, key, NULL) : NULL;
   if (key && !old) scope_add(said, (Entity){.name = key, .span = st->span});
   if (!old) return;
@@ -97,4 +75,51 @@ void check_set_once(Builder *b, const AstStmt *block) {
     const char *owner = x->kind == STMT_USE ? arena_printf(b->arena, "%s.", x->name) : "";
     for (const AstStmt *o = x->body; o; o = o->next) check_setting(b, values, o, owner);
   }
+}
+
+/* --- members of families --- */
+
+/* The family's table of numbers and the settings that gave them, made at the first one in a block. */
+static uint32_t *given_numbers(Builder *b, const Entity *e, uint32_t primes) {
+  for (uint32_t i = 0; i < b->given.n; i++) {
+    const GivenFamily *f = &b->given.at[i];
+    if (f->name == e->name && f->effect == e->effect && f->parts == e->parts && f->primes == primes) return f->by;
+  }
+  GivenFamily f = {e->name, e->effect, e->parts, primes, ARENA_ARRAY(b->arena, uint32_t, entity_size(e) + 1)};
+  vec_push(b->arena, &b->given, f);
+  return f.by;
+}
+
+/* Reports setting s, which replaces numbers of an older one. */
+static void report_replaced(Builder *b, const MemberSetting *s, const MemberSetting *old, int all) {
+  Span span = ast_expr(b->ast, s->lhs)->span;
+  Name text = ast_text(b, s->lhs), before = ast_text(b, old->lhs);
+  if (strcmp(text, before) == 0) return; /* reported by check_setting */
+  if (all) {
+    diag_error(b->diags, span, "`%s` covers `%s`, whose value is lost" HELP "write the more general one first", text,
+               before);
+  } else {
+    diag_error(b->diags, span, "`%s` and `%s` share members: the second would win" HELP
+               "ranges may lie one within the other, the narrower one last", text, before);
+  }
+  diag_also(b->diags, ast_expr(b->ast, old->lhs)->span, "given here");
+}
+
+void check_members_kept(Builder *b, const Target *p, const Entity *e, const IndexRange *r, AstId lhs) {
+  uint32_t parts = p->part < 0 && e->parts ? e->parts : 1, shared = 0, covered = 0;
+  MemberSetting s = {lhs, (uint32_t)range_count(r) * parts};
+  if (!b->in_scene || !s.n || (!e->ndims && !e->parts)) return;
+  uint32_t *by = given_numbers(b, e, p->primes) + (p->part < 0 ? 0 : component_index(e->parts, p->part));
+  const MemberSetting *lost = NULL, *old = NULL;
+  int64_t at[2] = {r->lo[0], r->lo[1]};
+  vec_push(b->arena, &b->settings, s);
+  do {
+    for (uint32_t k = 0, i = member_offset(e, at); k < parts; k++, i++) {
+      if (by[i]) old = &b->settings.at[by[i] - 1], shared++;
+      if (by[i] && !lost && old->n <= s.n) lost = old;
+      covered += by[i] && old == lost;
+      by[i] = b->settings.n;
+    }
+  } while (range_next(r, at));
+  if (lost || (old && shared < s.n)) report_replaced(b, &s, lost ? lost : old, lost && covered == lost->n);
 }
