@@ -483,6 +483,8 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order, Inpu
   if (!first_order) check_momenta(b);
   declare_composed(b);
   each_active(b, declare_statement, NULL);
+  for (uint32_t i = 0; i < b->active.n; i++)
+    declare_empty_families(b, b->active.at[i].stmt, b->active.at[i].effect);
   each_active(b, declare_momentum, NULL); /* after all coordinates: the states are [q|p] */
   check_defines(b);
   Energies en = {0};

@@ -88,10 +88,10 @@ typedef struct {
   Span span;
 } SpinStart;
 
-/* A setting in a scene of n numbers of a family. */
+/* A setting in a scene of n numbers of a family: of all members (rank 3), of ranges (2, 1), of one member (0). */
 typedef struct {
   AstId lhs;
-  uint32_t n;
+  uint32_t n, rank;
 } MemberSetting;
 
 /* A family with members set in the scene; by[i]: index + 1 of the last setting of number i in Builder.settings. */
@@ -193,7 +193,8 @@ Expr resolve_in(Builder *b, AstId id, Context where, Name effect, const Unit *un
 Value resolve_member(Builder *b, const Entity *e, const int64_t *at, uint32_t primes, Span span, Context where);
 int index_in_range(Builder *b, const Entity *e, const int64_t *at, Span span);
 
-/* Advances at[] to the next member, row by row; 0 after the last. */
+/* Sets at[] to the first member, or advances it, row by row; 0: there is none, or none any more. */
+int first_member(const Entity *e, int64_t *at);
 int next_member(const Entity *e, int64_t *at);
 
 /* Component k of u x v in space; for vectors of a plane component 2. */
@@ -345,6 +346,8 @@ void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect);
 /* declare.c: enters the names that a statement declares into scope and model; a StatementFn. Likewise, of momenta
  * alone. */
 void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data);
+/* Families of observables in a `for` without turns, once all others are declared. */
+void declare_empty_families(Builder *b, const AstStmt *st, Name effect);
 void declare_momentum(Builder *b, const AstStmt *st, Name effect, void *data);
 
 /* Declares a name; 0, with a message, when it is taken. */
@@ -442,6 +445,7 @@ Name intern_printf(Builder *b, const char *fmt, ...) __attribute__((format(print
 Unit declared_unit(Builder *b, const AstStmt *st, Name effect);
 
 /* entities.c: declared unit of an entity, or NULL. */
+int is_coordinate(const Builder *b, const Entity *e); /* also one that is stored as a state */
 const Unit *entity_unit(const Builder *b, const Entity *e);
 
 /* check_units.c */

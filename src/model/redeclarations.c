@@ -96,8 +96,8 @@ static void report_replaced(Builder *b, const MemberSetting *s, const MemberSett
   Name text = ast_text(b, s->lhs), before = ast_text(b, old->lhs);
   if (strcmp(text, before) == 0) return; /* reported by check_setting */
   if (all) {
-    diag_error(b->diags, span, "`%s` covers `%s`, whose value is lost" HELP "write the more general one first", text,
-               before);
+    diag_error(b->diags, span, "`%s` covers `%s`, whose value is lost" HELP "%s", text, before,
+               old->n < s->n ? "write the more general one first" : "leave out one of them");
   } else {
     diag_error(b->diags, span, "`%s` and `%s` share members: the second would win" HELP
                "ranges may lie one within the other, the narrower one last", text, before);
@@ -107,7 +107,8 @@ static void report_replaced(Builder *b, const MemberSetting *s, const MemberSett
 
 void check_members_kept(Builder *b, const Target *p, const Entity *e, const IndexRange *r, AstId lhs) {
   uint32_t parts = p->part < 0 && e->parts ? e->parts : 1, shared = 0, covered = 0;
-  MemberSetting s = {lhs, (uint32_t)range_count(r) * parts};
+  uint32_t rank = p->indices ? (uint32_t)(r->name[0] != NULL) + (r->name[1] != NULL) : 3;
+  MemberSetting s = {lhs, (uint32_t)range_count(r) * parts, rank};
   if (!b->in_scene || !s.n || (!e->ndims && !e->parts)) return;
   uint32_t *by = given_numbers(b, e, p->primes) + (p->part < 0 ? 0 : component_index(e->parts, p->part));
   const MemberSetting *lost = NULL, *old = NULL;
@@ -116,7 +117,7 @@ void check_members_kept(Builder *b, const Target *p, const Entity *e, const Inde
   do {
     for (uint32_t k = 0, i = member_offset(e, at); k < parts; k++, i++) {
       if (by[i]) old = &b->settings.at[by[i] - 1], shared++;
-      if (by[i] && !lost && old->n <= s.n) lost = old;
+      if (by[i] && !lost && (old->n < s.n || (old->n == s.n && old->rank <= rank))) lost = old;
       covered += by[i] && old == lost;
       by[i] = b->settings.n;
     }
