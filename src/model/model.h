@@ -25,6 +25,7 @@ typedef struct {
   Unit unit;
   SymId z, rate;
   Expr flow;      /* right-hand side of z' = ...; 0: none yet, and always 0 for a coordinate */
+  Span flow_span; /* of z' = ... */
   int coordinate; /* declared by `coord`: see Model.first_order */
   int periodic;
 } State;
