@@ -348,11 +348,12 @@ typedef struct {
 /* Values of a member before its slips: gap, rate, restitution, friction, tangential restitution, static friction. */
 enum { FAMILY_VALUES = 6 };
 
-/* A sum that is not written out. beside: its outer terms have more than the inner sum; sampled: the self-check takes a
- * sample of its turns. */
+/* A sum, or a part of its range lo .. hi, that is not written out. beside: its outer terms have more than the inner
+ * sum; sampled: the self-check takes a sample of its turns. */
 typedef struct {
   AstId outer;
   int beside, sampled;
+  int64_t lo, hi;
 } QuantifiedSum;
 
 typedef struct {
