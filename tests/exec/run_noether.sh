@@ -57,6 +57,11 @@ lagrangian = sum(i in 1..N, x[i]'^2/2) - sum(i in 1..N, sum(j in 1..i-1, 1/(x[i]
 END
 for n in 34 60; do
   check "$n bodies have momentum and centre of mass" says "^Q3: boost along x: the centre of mass moves uniformly" noether "$TMP/calogero.lag" -D N=$n
+  check "$n bodies scale and expand" says "^found: 5 symmetries, each proved" noether "$TMP/calogero.lag" -D N=$n
+  check "a boost and a translation have the mass as bracket" says "^  {Q2, Q3} = $n\$" noether "$TMP/calogero.lag" -D N=$n
+  for bracket in '{Q1, Q3} = Q2' '{Q1, Q4} = -2.Q1' '{Q1, Q5} = Q4' '{Q2, Q4} = -Q2' '{Q2, Q5} = -Q3' '{Q3, Q4} = Q3' '{Q4, Q5} = -2.Q5'; do
+    check "$bracket" says "^  $bracket\$" noether "$TMP/calogero.lag" -D N=$n
+  done
   check "and more is not excluded, which is said" says "^the linear equations of the full search could not be solved reliably" noether "$TMP/calogero.lag" -D N=$n
 done
 
