@@ -539,7 +539,8 @@ void add_canonical(Builder *b, const AstStmt *st);
 void check_names_once(Builder *b, const FileIndex *file);
 void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Span span);
 void check_set_once(Builder *b, const AstStmt *block);
-/* In a scene: records the members r as set; reports those set before by a setting that is not the wider one. */
+/* kept_members.c: in a scene, records the members r as set; reports those set before by a setting that is not the
+ * wider one. */
 void check_members_kept(Builder *b, const Target *p, const Entity *e, const IndexRange *r, AstId lhs);
 
 /* event.c: adds an event, or a section; resolves a value assigned to a coordinate, a state, or the rate of one,

@@ -386,8 +386,8 @@ static void compare_with_usual(SymmetrySearch *s) {
   joined.attempt = out->attempt;
   joined.unproved = none || out->unproved < missing ? 0 : out->unproved - missing;
   *out = joined;
-  out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts, rotations, scalings and expansions of "
-                "all coordinates of a kind together";
+  out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts, rotations, scalings and expansions "
+                "of all coordinates of a kind together";
   s->out->note = "the linear equations of the full search could not be solved reliably";
 }
 

@@ -1,5 +1,5 @@
-/* Scalings that multiply the action, or leave it: exponents from the kernel of linear equations at random states, the same
- * rationals at two choices of parameters, then proved term by term. In large models, and where
+/* Scalings that multiply the action, or leave it: exponents from the kernel of linear equations at random states, the
+ * same rationals at two choices of parameters, then proved term by term. In large models, and where
  * the action is left, the coordinates of a kind have one exponent; in large models one turn stands for all of a
  * quantified sum. */
 #include <math.h>

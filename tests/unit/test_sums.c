@@ -75,8 +75,10 @@ static const char *const texts[] = {
     "  sum(i in 1..N, if(not i == 2 and 2*i <= N + 3, i*cos(x[i]*y[N+1-i]), y[if(i == N, 2, if(i >= N-1, 1, i+2))]))",
     /* conditions in lets by index, of other lets; on the outer index of pairs, and beside the inner sum */
     "const N = %d\ncoord x[N], y[N]\nparam k[N] = 1\nlet d[i in 1..N] = x[i] - if(i > 1, x[i-1], 0)\n"
-    "let e[i in 0..N] = if(i < N, y[i+1], 0) - if(i > 0, y[i], 0), f[i in 1..N] = d[i]*if(i == 2, e[i], cos(e[i-1]))\n"
-    "lagrangian = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2 - d[i]^2 - f[i]) - sum(i in 0..N, e[i]^2 + e[if(i > 1, 0, N)]) -\n"
+    "let e[i in 0..N] = if(i < N, y[i+1], 0) - if(i > 0, y[i], 0), \n"
+    "  f[i in 1..N] = d[i]*if(i == 2, e[i], cos(e[i-1]))\n"
+    "lagrangian = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2 - d[i]^2 - f[i]) -\n"
+    "  sum(i in 0..N, e[i]^2 + e[if(i > 1, 0, N)]) -\n"
     "  sum(i in 1..N, sum(j in 1..i-1, if(i < N, k[i], 2*k[j])*cos(x[i] - x[j]) + d[i]*y[j])) -\n"
     "  sum(i in 1..N, if(i > 2, y[i-2], 3)*sum(j in 2..N, if(i != 3, x[i]^2, y[j])/i) + if(i > N-2, y[i]^3, x[i]))",
     /* a range that moves and grows; the first two rows are empty */
@@ -209,7 +211,8 @@ static void random_families_agree(void **state) {
     const char *pairs = random_sum(a, 1), *single = random_sum(a, 0), *beside = random_sum(a, round % 2);
     const char *text = arena_printf(
         a,
-        "const N = %%d, M = 2*N + 2\ncoord x[M], y[M]\nparam k[M] = 1 > 0, w = 1/3\nlet c[i in 1..M] = w*sin(y[i]) + if(i > 3, x[i-3], w*y[1])\n"
+        "const N = %%d, M = 2*N + 2\ncoord x[M], y[M]\nparam k[M] = 1 > 0, w = 1/3\n"
+        "let c[i in 1..M] = w*sin(y[i]) + if(i > 3, x[i-3], w*y[1])\n"
         "kinetic = sum(i in 1..M, k[i]*(x[i]'^2 + y[i]'^2)/2) + sum(i in 1..N, w/9*x[i]'*x[i+1]')\n"
         "potential = %s + %s + %s\n"
         "dissipation = sum(i in 1..N, sum(j in 1..N, w/2*(x[i]' - y[j]')^2*(1 + c[i]^2)))",
