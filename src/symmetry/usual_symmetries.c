@@ -129,7 +129,8 @@ void try_usual_symmetries(Eqns *e, FoundSymmetries *out, SearchLimit *limit) {
                  .limit = limit};
   search_stage(limit, 0.8, "the usual symmetries");
   out->ansatz = "for more than a hundred coordinates members of a family move alike: the energy, momenta of cyclic "
-                "coordinates, and translations, boosts and rotations of all coordinates of a kind together";
+                "coordinates, and translations, boosts, rotations, scalings and expansions of all coordinates of "
+                "a kind together";
   out->searched = 1;
   try_one(&w, zero_components(&w), expr_int(e->g, -1),
           (FoundSymmetry){.kind = SYMMETRY_ENERGY, .name = "energy", .axis = AXIS_NONE});
