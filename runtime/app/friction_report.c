@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "app/app.h"
+#include "core/core.h"
 
 enum { MOST_LINES = 24 };
 
@@ -15,7 +16,8 @@ void lag_report_switches(const App *app, FILE *f) {
     double time = lag_sim_switch_times(app->sim, k, &crossings, &slides);
     if (crossings + slides == 0) continue;
     lines++;
-    fprintf(f, "surface %s = 0: crossed %lld time%s", m->switches[k].surface, crossings, crossings == 1 ? "" : "s");
+    fprintf(f, "surface %s = %s: crossed %lld time%s", m->switches[k].surface, lag_switch_value(&m->switches[k]),
+            crossings, crossings == 1 ? "" : "s");
     if (slides) fprintf(f, "; stuck or slid there %lld time%s, for %.6g s", slides, slides == 1 ? "" : "s", time);
     putc('\n', f);
   }

@@ -96,8 +96,9 @@ static void put_text(FILE *f, const App *app, const LinearSystem *s) {
     fputs("the start is no equilibrium: changes are from the motion that begins there; --equilibrium finds one\n", f);
   const lag_switch *jump = lag_jump_at(s->sim, s->y);
   if (jump)
-    fprintf(f, "%s jumps here, at %s = 0: small motions there are not linear, and these are the equations without it\n",
-            jump->text, jump->surface);
+    fprintf(f,
+            "%s jumps here, at %s = %s: small motions there are not linear, and these are the equations without it\n",
+            jump->text, jump->surface, lag_switch_value(jump));
 }
 
 /* ---- JSON and files */

@@ -293,6 +293,8 @@ void lag_hold_swap(lag_sim *sim, double *other);
 /* step: counts for the step from `now` to y at t, where the method finds modes. sticks: whether the motion does on
  * surface k. */
 int lag_switch_step(lag_sim *sim, double t);
+/* Value of the switching function on its surface, for messages. */
+static inline const char *lag_switch_value(const lag_switch *c) { return c->is_floor ? "a whole number" : "0"; }
 int lag_switch_sticks(const lag_sim *sim, int k);
 /* 1: no branch is held, for right-hand sides at states that are not of the run; 0: those of the run again. */
 void lag_switch_set_free(lag_sim *sim, int free);

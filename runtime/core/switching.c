@@ -204,8 +204,8 @@ static int fail_at(lag_sim *s, int status, int k, const char *why) {
   const lag_switch *c = &s->scene->model->switches[k];
   char line[32] = "";
   if (c->line) snprintf(line, sizeof line, " in line %d", c->line);
-  return lag_fail(s, status, "at t = %s s the motion meets %s = 0, where `%s`%s switches: %s", LAG_TEXT(s->run->t),
-                  c->surface, c->text, line, why);
+  return lag_fail(s, status, "at t = %s s the motion meets %s = %s, where `%s`%s switches: %s", LAG_TEXT(s->run->t),
+                  c->surface, lag_switch_value(c), c->text, line, why);
 }
 
 /* ---- Which branches follow */

@@ -11,16 +11,25 @@ LAG_UNUSED static LAG_MASK lag_solve(int n, LAG_REAL *M, LAG_REAL *b);
 /* ---- solver ---- */
 /* M x = b by elimination with partial pivoting (Golub & Van Loan, Matrix Computations, 4th ed., algorithm 3.4.1):
  * M[n*n] row-major is destroyed, b becomes x. Rows are exchanged under a mask, so that each lane has its own pivots.
- * Returns whether M is regular, or has elements that are no numbers: then x has none. */
+ * Zeros outside of a band are passed over: of rows exchanged within it, `below` rows and `below + above` columns follow
+ * a pivot. Returns whether M is regular, or has elements that are no numbers: then x has some. */
 LAG_UNUSED static LAG_MASK lag_solve(int n, LAG_REAL *M, LAG_REAL *b) {
   LAG_MASK regular = LAG_C(0.0) == LAG_C(0.0);
+  int below = 0, above = 0;
+  for (int i = 0; i < n; i++) {
+    for (int j = 0; j < i - below; j++)
+      if (LAG_ANY(M[i*n + j] != LAG_C(0.0))) below = i - j;
+    for (int j = n - 1; j > i + above; j--)
+      if (LAG_ANY(M[i*n + j] != LAG_C(0.0))) above = j - i;
+  }
   for (int k = 0; k < n; k++) {
-    for (int i = k + 1; i < n; i++) { /* the largest element of column k is moved to row k */
+    const int rows = n - k > below ? k + below + 1 : n, end = n - k > below + above ? k + below + above + 1 : n;
+    for (int i = k + 1; i < rows; i++) { /* the largest element of column k is moved to row k */
       const LAG_REAL here = LAG_FN(fabs)(M[i*n + k]);
       const LAG_MASK larger = LAG_OR(here > LAG_FN(fabs)(M[k*n + k]), here != here);
       if (!LAG_ANY(larger)) continue;
-      for (int j = k; j <= n; j++) {
-        LAG_REAL *const upper = j < n ? &M[k*n + j] : &b[k], *const lower = j < n ? &M[i*n + j] : &b[i];
+      for (int j = k; j <= end; j++) {
+        LAG_REAL *const upper = j < end ? &M[k*n + j] : &b[k], *const lower = j < end ? &M[i*n + j] : &b[i];
         const LAG_REAL was = *upper;
         *upper = LAG_SELECT(larger, *lower, was);
         *lower = LAG_SELECT(larger, was, *lower);
@@ -28,14 +37,15 @@ LAG_UNUSED static LAG_MASK lag_solve(int n, LAG_REAL *M, LAG_REAL *b) {
     }
     regular = LAG_AND(regular, LAG_NOT(LAG_FN(fabs)(M[k*n + k]) <= LAG_C(0.0)));
     if (!LAG_ANY(regular)) break;
-    for (int i = k + 1; i < n; i++) {
+    for (int i = k + 1; i < rows; i++) {
       const LAG_REAL factor = M[i*n + k]/M[k*n + k];
-      for (int j = k + 1; j < n; j++) M[i*n + j] -= factor*M[k*n + j];
+      for (int j = k + 1; j < end; j++) M[i*n + j] -= factor*M[k*n + j];
       b[i] -= factor*b[k];
     }
   }
   for (int k = n - 1; k >= 0; k--) {
-    for (int j = k + 1; j < n; j++) b[k] -= M[k*n + j]*b[j];
+    const int end = n - k > below + above ? k + below + above + 1 : n;
+    for (int j = k + 1; j < end; j++) b[k] -= M[k*n + j]*b[j];
     b[k] /= M[k*n + k];
   }
   return regular;

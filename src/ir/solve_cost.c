@@ -74,12 +74,20 @@ static Ops by_complement(Arena *a, const Solve *k) {
   return c;
 }
 
-/* Elimination and two substitutions. */
+/* Elimination and two substitutions, within the band that lag_solve finds. */
 static OpCount by_pivoting(const Solve *k) {
   OpCount c = {.div = k->n};
+  uint64_t below = 0, above = 0;
+  for (uint64_t i = 0; i < k->n; i++)
+    for (uint64_t j = 0; j < k->n; j++) {
+      if (!k->matrix[i*k->n + j]) continue;
+      if (i > j + below) below = i - j;
+      if (j > i + above) above = j - i;
+    }
   for (uint64_t left = k->n; left-- > 0;) {
-    c.mul += left*left + 2*left;
-    c.div += left;
+    uint64_t rows = left < below ? left : below, columns = left < below + above ? left : below + above;
+    c.mul += rows*columns + rows + columns;
+    c.div += rows;
   }
   c.add = c.mul;
   return c;

@@ -81,10 +81,13 @@ static BlockLayout make_layout(Lower *l, const RightHandSides *s) {
   BlockLayout y = {.blocks = ARENA_ARRAY(a, Block, e->n),
                    .block = ARENA_ARRAY(a, uint32_t, e->n),
                    .place = ARENA_ARRAY(a, uint32_t, e->n)};
+  uint32_t *first = ARENA_ARRAY(a, uint32_t, e->n);
   for (uint32_t i = 0; i < e->n; i++) {
+    if (label[i] == i) first[y.n] = i;
     y.block[i] = label[i] == i ? y.n++ : y.block[label[i]];
     y.place[i] = y.blocks[y.block[i]].n++;
   }
+  if (!s->nrows) lower_band_order(l, first, y.n, y.place);
   place_rows(l, s, &y);
   for (uint32_t k = 0; k < y.n; k++) {
     Block *b = &y.blocks[k];
@@ -119,7 +122,8 @@ static uint32_t make_blocks(Lower *l, const RightHandSides *s, Block **blocks) {
     Block *b = &y.blocks[y.block[x->row]];
     Slot slot = lower_slot(l, x->e);
     lower_name(l, slot, "M", x->row, x->col);
-    b->M[y.place[x->row] * b->n + y.place[x->col]] = slot;
+    uint32_t i = y.place[x->row], j = y.place[x->col];
+    b->M[i > j ? i * b->n + j : j * b->n + i] = slot;
   }
   for (uint32_t i = 0; i < e->n; i++) {
     Block *b = &y.blocks[y.block[i]];

@@ -87,3 +87,6 @@ void lower_name(Lower *l, Slot s, const char *stem, uint32_t i, uint32_t j);
 
 /* Check that d is positive, or (positive 0) not zero; none where d is a number that passes. */
 void lower_pivot(Lower *l, Slot d, int positive);
+/* band_order.c: renumbers place[] within the blocks of M that begin with the coordinates first[blocks], where their
+ * band becomes half as wide. */
+void lower_band_order(Lower *l, const uint32_t *first, uint32_t blocks, uint32_t *place);

@@ -59,6 +59,8 @@ static Span place_of(const Eqns *e, Expr node, Expr side, int nonnegative) {
   for (uint32_t k = 0; k < m->forces.n; k++)
     if (is_inside(e->g, m->forces.at[k].f, node) || (nonnegative && turns_at_rest(e, m->forces.at[k].f, side)))
       return m->forces.at[k].span;
+  for (uint32_t k = 0; k < m->states.n; k++)
+    if (m->states.at[k].flow && is_inside(e->g, m->states.at[k].flow, node)) return m->states.at[k].flow_span;
   return m->dissipation ? m->dissipation_span : m->lagrangian_span;
 }
 
@@ -345,13 +347,15 @@ Expr switch_power(const Eqns *e) {
 
 /* --- messages --- */
 
+static const char *value_at(const Switch *s) { return s->kind == SWITCH_FLOOR ? "a whole number" : "0"; }
+
 void switches_warn(const Eqns *e) {
   const Switches *all = &e->switches;
   for (uint32_t i = all->nmodes; i < all->n; i++) {
     diag_warning(e->m->diags, all->at[i].span,
-                 "a force jumps where `%s` is 0; a motion that sticks there, as under dry friction, cannot be "
+                 "a force jumps where `%s` is %s; a motion that sticks there, as under dry friction, cannot be "
                  "followed: the run ends where it sticks",
-                 all->at[i].surface);
+                 all->at[i].surface, value_at(&all->at[i]));
     diag_help(e->m->diags, "smooth it, as tanh(v/w) for sign(v) with a small velocity w, and take radau; or let an "
                            "event stop the run there");
   }
@@ -362,7 +366,7 @@ void switches_show(const Eqns *e, StrBuf *out) {
   const Switches *all = &e->switches;
   for (uint32_t i = 0; i < all->nmodes && i < MOST; i++) {
     Place place = source_place(e->m->ast->sources, all->at[i].span.begin);
-    sb_printf(out, "switching surface: `%s` = 0 (line %u)%s\n", all->at[i].surface, place.line,
+    sb_printf(out, "switching surface: `%s` = %s (line %u)%s\n", all->at[i].surface, value_at(&all->at[i]), place.line,
               all->at[i].jumps ? ", where a motion may stick" : "");
   }
   if (all->nmodes > MOST) sb_printf(out, "switching surfaces: %u more\n", all->nmodes - MOST);

@@ -263,6 +263,7 @@ void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstI
     return;
   }
   if (!read_ranges(b, p, e, lhs, &r)) return;
+  check_members_kept(b, p, e, &r, lhs);
   const AstUnit *behind;
   const AstExpr *list = list_behind(b, rhs, &behind);
   if (list) give_list(&s, &r, list, behind);

@@ -232,9 +232,11 @@ static void add_flow(Builder *b, const AstStmt *st, Name effect) {
   Value v = resolve_for(b, st->rhs, effect, z->rate, &z->unit);
   if (v.e && v.n != of.n) report_shapes(b, st->span, of.n, v.n);
   b->m->domain = domain_and(b, b->m->domain, v.domain);
-  for (uint32_t k = 0; k < (of.n ? of.n : 1); k++)
-    /* reported */
-    b->m->states.at[expr_sym_of(b->g, of.at[k])->index].flow = v.e && v.n == of.n ? v.at[k] : expr_int(b->g, 0);
+  for (uint32_t k = 0; k < (of.n ? of.n : 1); k++) {
+    State *part = &b->m->states.at[expr_sym_of(b->g, of.at[k])->index];
+    part->flow = v.e && v.n == of.n ? v.at[k] : expr_int(b->g, 0); /* reported */
+    part->flow_span = st->span;
+  }
 }
 
 static void add_expect(Builder *b, const AstStmt *st, Name effect) {
@@ -481,6 +483,8 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order, Inpu
   if (!first_order) check_momenta(b);
   declare_composed(b);
   each_active(b, declare_statement, NULL);
+  for (uint32_t i = 0; i < b->active.n; i++)
+    declare_empty_families(b, b->active.at[i].stmt, b->active.at[i].effect);
   each_active(b, declare_momentum, NULL); /* after all coordinates: the states are [q|p] */
   check_defines(b);
   Energies en = {0};

@@ -88,6 +88,18 @@ typedef struct {
   Span span;
 } SpinStart;
 
+/* A setting in a scene of n numbers of a family: of all members (rank 3), of ranges (2, 1), of one member (0). */
+typedef struct {
+  AstId lhs;
+  uint32_t n, rank;
+} MemberSetting;
+
+/* A family with members set in the scene; by[i]: index + 1 of the last setting of number i in Builder.settings. */
+typedef struct {
+  Name name, effect;
+  uint32_t parts, primes, *by;
+} GivenFamily;
+
 /* A name that only the statement being read knows. */
 typedef struct {
   Name name;
@@ -146,6 +158,9 @@ struct Builder {
   const AstStmt **chain; /* the scene after its `like` ancestors, oldest first; NULL-terminated */
   int is_variant;  /* ModelChoice.only is given */
   int is_giving;   /* ModelChoice.given is being applied */
+  int in_scene;    /* statements of a scene are being applied; the settings so far of one scene of the chain: */
+  VEC(MemberSetting) settings;
+  VEC(GivenFamily) given;
   int is_measuring; /* a measure is being read */
   int unitless;    /* no name of the model has a unit: dimensions are not checked */
   /* [nbound] the group parameter of the symmetry being read; the new variables of a canonical transformation */
@@ -179,7 +194,8 @@ Expr resolve_in(Builder *b, AstId id, Context where, Name effect, const Unit *un
 Value resolve_member(Builder *b, const Entity *e, const int64_t *at, uint32_t primes, Span span, Context where);
 int index_in_range(Builder *b, const Entity *e, const int64_t *at, Span span);
 
-/* Advances at[] to the next member, row by row; 0 after the last. */
+/* Sets at[] to the first member, or advances it, row by row; 0: there is none, or none any more. */
+int first_member(const Entity *e, int64_t *at);
 int next_member(const Entity *e, int64_t *at);
 
 /* Component k of u x v in space; for vectors of a plane component 2. */
@@ -331,6 +347,8 @@ void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect);
 /* declare.c: enters the names that a statement declares into scope and model; a StatementFn. Likewise, of momenta
  * alone. */
 void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data);
+/* Families of observables in a `for` without turns, once all others are declared. */
+void declare_empty_families(Builder *b, const AstStmt *st, Name effect);
 void declare_momentum(Builder *b, const AstStmt *st, Name effect, void *data);
 
 /* Declares a name; 0, with a message, when it is taken. */
@@ -432,6 +450,7 @@ Name intern_printf(Builder *b, const char *fmt, ...) __attribute__((format(print
 Unit declared_unit(Builder *b, const AstStmt *st, Name effect);
 
 /* entities.c: declared unit of an entity, or NULL. */
+int is_coordinate(const Builder *b, const Entity *e); /* also one that is stored as a state */
 const Unit *entity_unit(const Builder *b, const Entity *e);
 /* The symbol of element i of the model's coordinates, states, parameters or inputs; of the first two its rate. */
 SymId entity_symbol(const Model *m, EntKind kind, int rate, uint32_t i);
@@ -529,6 +548,9 @@ void add_canonical(Builder *b, const AstStmt *st);
 void check_names_once(Builder *b, const FileIndex *file);
 void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Span span);
 void check_set_once(Builder *b, const AstStmt *block);
+/* kept_members.c: in a scene, records the members r as set; reports those set before by a setting that is not the
+ * wider one. */
+void check_members_kept(Builder *b, const Target *p, const Entity *e, const IndexRange *r, AstId lhs);
 
 /* event.c: adds an event, or a section; resolves a value assigned to a coordinate, a state, or the rate of one,
  * whose name is declared in `unit`; reports different shapes. */

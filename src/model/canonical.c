@@ -26,7 +26,7 @@ static OldPlaces old_places(const Reader *r, Name name) {
   const Entity *e = scope_own(&r->b->scope, name, NULL);
   const Model *m = r->b->m;
   SymId s = 0;
-  if (!e) return (OldPlaces){0, 0};
+  if (!e || !entity_size(e)) return (OldPlaces){0, 0};
   if (e->kind == ENT_COORD) s = m->coords.at[e->index].q;
   if (e->kind == ENT_STATE) s = m->states.at[e->index].z;
   for (uint32_t i = 0; s && i < r->nold; i++)

@@ -216,10 +216,12 @@ void add_contact_family(Builder *b, const AstStmt *st, Name effect) {
   Work w = {.b = b, .st = st, .effect = effect, .first = st->dims, .second = ast_expr(ast, st->dims)->next};
   w.near = near_of(ast, w.second);
   check_name_is_new(b, "constraint", st->name, effect, st->name_span);
-  if (!read_ranges(&w) || !note_all(&w)) return;
+  if (!read_ranges(&w)) return;
+  uint64_t members = 0;
+  for (int64_t k = 0; k < w.q.range.rows; k++) members += loop_turns(&w.q.range, k) > 0;
+  if (!members || !note_all(&w)) return;
   if (!find_representative(&w)) {
-    for (int64_t k = 0; k < w.q.range.rows; k++)
-      if (loop_turns(&w.q.range, k)) refuse_family(&w, st->lhs, "no member reads different coordinates at its indices");
+    refuse_family(&w, st->lhs, "no member reads different coordinates at its indices");
     return;
   }
   Value gap = evaluate(&w, st->lhs), e = evaluate(&w, st->rhs);

@@ -77,14 +77,14 @@ static void declare_motion(Builder *b, const AstStmt *st, Name effect) {
   if (!declare_family(b, st, effect, kind, first, parts, &e)) return;
   Unit unit = parts == ROTATION ? unit_si(DIM_NONE, "") : declared_unit(b, st, effect);
   if (st->periodic) check_angle(b, st, &unit);
-  int64_t at[2] = {1, 1};
+  int64_t at[2];
   Name stem = plain_name(b, st, effect);
-  do {
+  for (int more = first_member(&e, at); more; more = next_member(&e, at)) {
     for (uint32_t k = 0; k < (e.parts ? e.parts : 1u); k++)
       (is_state ? add_state : add_coord)(b, st, scalar_name(b, &e, stem, at, k), unit);
     if (parts == ROTATION && !is_state)
       constrain_rotation(b, member_name(b->ast, stem, at, e.ndims), e.index + member_offset(&e, at), st->name_span);
-  } while (next_member(&e, at));
+  }
 }
 
 static void declare_input(Builder *b, const AstStmt *st, Name effect) {
@@ -210,6 +210,17 @@ static void declare_observe(Builder *b, const AstStmt *st, Name effect) {
   add_observe(b, st, effect, name);
 }
 
+void declare_empty_families(Builder *b, const AstStmt *st, Name effect) {
+  const AstStmt *within = st->kind == STMT_FOR ? st->body : NULL;
+  for (const AstStmt *s = within; s; s = s->next) {
+    declare_empty_families(b, s, effect); /* recursion bounded by the parser */
+    if (s->kind != STMT_OBSERVE || !s->dims || scope_own(&b->scope, s->name, effect)) continue;
+    Entity e = {.kind = ENT_OBSERVE, .name = s->name, .effect = effect, .span = s->name_span, .lo = {1, 1}};
+    for (AstId i = s->dims; i && e.ndims < 2; i = ast_expr(b->ast, i)->next) e.ndims++;
+    scope_add(&b->scope, e);
+  }
+}
+
 /* 1 if a momentum p beside L has the size of its coordinate; otherwise reported. */
 static int names_a_momentum(Builder *b, const AstStmt *st, Name effect, Entity *p) {
   const AstExpr *of = ast_expr(b->ast, st->lhs);
@@ -225,6 +236,7 @@ static void declare_momenta(Builder *b, const AstStmt *st, Name effect, const En
   uint32_t family = family_of(b, st, effect, ENT_OBSERVE, &r), outer = b->index.n;
   int64_t at[2] = {p->lo[0], p->lo[1]};
   Name name;
+  if (!entity_size(p)) return;
   do {
     if (!family || !declare_member(b, st, family, at, b->m->observes.n, &name)) return;
     for (int k = 0; k < p->ndims; k++)

@@ -91,9 +91,9 @@ typedef struct {
 static void read_formula(const Declared *d, Name effect, ParamValues *values) {
   Builder *b = d->b;
   uint32_t outer = b->index.n;
-  int64_t at[2] = {1, 1};
-  Value v;
-  do {
+  int64_t at[2];
+  Value v = {.e = 1};
+  for (int more = first_member(&d->e, at); more && v.e; more = next_member(&d->e, at)) {
     AstId dim = d->st->dims;
     for (int k = 0; dim; dim = ast_expr(b->ast, dim)->next, k++)
       if (ast_expr(b->ast, dim)->kind == AST_BIND)
@@ -102,7 +102,7 @@ static void read_formula(const Declared *d, Name effect, ParamValues *values) {
     vec_push(b->arena, &values->at, v);
     vec_push(b->arena, &values->spans, ast_expr(b->ast, d->st->rhs)->span);
     b->index.n = outer;
-  } while (v.e && next_member(&d->e, at));
+  }
 }
 
 /* Whether an index of the declaration is a range with a name. */
@@ -146,18 +146,18 @@ void declare_param(Builder *b, const AstStmt *st, Name effect) {
   int known = read_family(b, st, effect, ENT_PARAM, b->m->params.n, parts, &d.e);
   if (!known) return;
   int fits = read_values(&d, effect, &values);
-  if (!st->type && fits) d.e.parts = (uint8_t)values.at.at[0].n;
+  if (!st->type && fits && values.at.n) d.e.parts = (uint8_t)values.at.at[0].n;
   if (d.e.parts && st->sign != SIGN_ANY)
     diag_error(b->diags, st->name_span, "`%s` is %s, and has no sign", st->name, shape_text(b, d.e.parts));
   d.unit = param_unit(b, st, effect, &values);
   if (!declare_entity(b, st, d.e)) return;
-  int64_t at[2] = {1, 1};
+  int64_t at[2];
   uint32_t i = 0;
-  do {
+  for (int more = first_member(&d.e, at); more; more = next_member(&d.e, at)) {
     int given = i < values.at.n;
     add_member(&d, at, given ? values.at.at[i] : (Value){0}, given ? values.spans.at[i] : st->span);
     i += values.at.n > 1;
-  } while (next_member(&d.e, at));
+  }
 }
 
 /* The last -D for a constant, or NULL. */

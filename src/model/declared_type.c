@@ -52,19 +52,20 @@ static int fits_memory(Builder *b, const AstStmt *st, const Entity *e) {
                     (unsigned long long)all, (double)all * MEMBER_BYTES / MB, (double)limit / MB);
 }
 
-/* Reads the sizes of a family into e, as index ranges 1..N. */
 /* A size, N or, of parameters whose value depends on it, the range `i in 1..N`; 0, reported, on error. */
 static int read_size(Builder *b, const AstStmt *st, AstId id, Name effect, int64_t *n) {
   const AstExpr *x = ast_expr(b->ast, id);
   if (x->kind != AST_BIND) return resolve_whole(b, id, effect, n);
   int64_t lo;
   if (!resolve_whole(b, x->a, effect, &lo) || !resolve_whole(b, x->b, effect, n)) return 0;
+  if (*n < 0) *n = 0; /* an empty range, as 1..0 is */
   if (st->kind == STMT_PARAM && lo == 1) return 1;
   return diag_error(b->diags, x->span,
                     "a family is declared by its size, and its members begin at 1" HELP "write `%s[%s]`", st->name,
                     ast_text(b, x->b));
 }
 
+/* Reads the sizes of a family into e, as index ranges 1..N. */
 static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
   uint64_t all = e->parts ? e->parts : 1;
   for (AstId i = st->dims; i; i = ast_expr(b->ast, i)->next) {
@@ -75,7 +76,8 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
       return 0;
     }
     if (!read_size(b, st, i, effect, &n)) return 0;
-    if (n < 1) return diag_error(b->diags, span, "a family has at least one member, and this is %lld", (long long)n);
+    if (n < 0) return diag_error(b->diags, span, "the size of a family is negative: %lld" HELP
+                                  "a family of size 0 has no members", (long long)n);
     if (n > FAMILY_MAX || (all *= (uint64_t)n) > FAMILY_MAX)
       return diag_error(b->diags, span, "a family has at most %d members", FAMILY_MAX);
     e->lo[e->ndims] = 1;

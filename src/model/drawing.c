@@ -340,7 +340,7 @@ static void draw_statement(Builder *b, const AstStmt *st, Name effect, void *dat
     read_member(&r);
     return;
   }
-  if (!resolve_indices(b, st->dims, effect, &range)) return;
+  if (!resolve_indices(b, st->dims, effect, &range) || !range_count(&range)) return;
   int64_t at[2] = {range.lo[0], range.lo[1]};
   for (uint32_t k = 0; k < range.n; k++)
     if (range.name[k]) vec_push(b->arena, &b->index, ((IndexVar){range.name[k], at[k]}));

@@ -33,7 +33,7 @@ IndexRange entity_range(const Entity *e) {
 
 const Unit *entity_unit(const Builder *b, const Entity *e) {
   const Model *m = b->m;
-  switch (e->kind) {
+  switch (entity_size(e) ? e->kind : ENT_NONE) {
     case ENT_COORD: return &m->coords.at[e->index].unit;
     case ENT_STATE: return &m->states.at[e->index].unit;
     case ENT_INPUT: return &m->inputs.at[e->index].unit;
@@ -50,6 +50,11 @@ SymId entity_symbol(const Model *m, EntKind kind, int rate, uint32_t i) {
          : kind == ENT_STATE ? (rate ? m->states.at[i].rate : m->states.at[i].z)
          : kind == ENT_PARAM ? m->params.at[i].sym
                              : m->inputs.at[i].sym;
+}
+
+int is_coordinate(const Builder *b, const Entity *e) {
+  if (e->kind != ENT_STATE) return e->kind == ENT_COORD;
+  return entity_size(e) ? b->m->states.at[e->index].coordinate : b->m->first_order || b->m->hamiltonian;
 }
 
 int is_momentum_name(Name name) { return name[0] == 'p' && (strlen(name) <= 2 || name[1] == '_'); }

@@ -17,6 +17,11 @@ int range_next(const IndexRange *r, int64_t *at) {
   return 0;
 }
 
+int first_member(const Entity *e, int64_t *at) {
+  for (int k = 0; k < 2; k++) at[k] = k < e->ndims ? e->lo[k] : 1;
+  return entity_size(e) > 0;
+}
+
 int next_member(const Entity *e, int64_t *at) {
   IndexRange r = entity_range(e);
   return range_next(&r, at);

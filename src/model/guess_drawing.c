@@ -88,8 +88,8 @@ static Value member_value(Guess *k, const Entity *e, const int64_t *at) {
 /* Points of scalars: each member of x with those of y and z. */
 static void add_named(Guess *k, const Entity *const *of, uint32_t n) {
   Builder *b = k->d->b;
-  int64_t at[2] = {of[0]->lo[0], of[0]->lo[1]};
-  do {
+  int64_t at[2];
+  for (int more = first_member(of[0], at); more; more = next_member(of[0], at)) {
     Expr place[3];
     uint32_t c = 0;
     for (; c < n; c++) {
@@ -101,7 +101,7 @@ static void add_named(Guess *k, const Entity *const *of, uint32_t n) {
                        : n == 3     ? arena_printf(b->arena, "(%s, %s, %s)", of[0]->name, of[1]->name, of[2]->name)
                                     : arena_printf(b->arena, "(%s, %s)", of[0]->name, of[1]->name);
     if (c == n) add_point(k, place, n, text);
-  } while (next_member(of[0], at));
+  }
 }
 
 /* Number of letters of axes in a name: `wxx` is no place. */
@@ -126,11 +126,11 @@ static void find_names(Guess *k, const Entity *e) {
 
 /* Vectors among coordinates, states and definitions. */
 static void find_vectors(Guess *k, const Entity *e) {
-  int64_t at[2] = {e->lo[0], e->lo[1]};
-  do {
+  int64_t at[2];
+  for (int more = first_member(e, at); more; more = next_member(e, at)) {
     Value v = member_value(k, e, at);
     if ((v.n == 2 || v.n == 3) && is_place(k, v.dim)) add_point(k, v.at, v.n, e->ndims ? NULL : e->name);
-  } while (next_member(e, at));
+  }
 }
 
 /* Coordinates first: they say what a place is. */
@@ -162,17 +162,16 @@ static Scalars scalars_of(Guess *k) {
   Scalars out = {0};
   for (uint32_t i = 0; i < b->scope.all.n; i++) {
     const Entity e = b->scope.all.at[i];
-    int moves = e.kind == ENT_COORD || (e.kind == ENT_STATE && b->m->states.at[e.index].coordinate);
-    if (!moves || e.parts || is_momentum(b, &e)) continue;
-    int64_t at[2] = {e.lo[0], e.lo[1]};
-    do {
+    if (!is_coordinate(b, &e) || e.parts || is_momentum(b, &e)) continue;
+    int64_t at[2];
+    for (int more = first_member(&e, at); more; more = next_member(&e, at)) {
       Value v = member_value(k, &e, at);
       uint32_t place = e.index + (e.ndims ? (uint32_t)(at[0] - e.lo[0]) : 0);
       const Unit *u = entity_unit(b, &e);
       int periodic = e.kind == ENT_COORD ? b->m->coords.at[place].periodic : b->m->states.at[place].periodic;
       Scalar s = {v.e, e.ndims ? NULL : e.name, v.dim, periodic || (u->text && has_word("rad deg", u->text))};
       if (v.e && !v.n && out.n < MOST_POINTS) vec_push(b->arena, &out, s);
-    } while (next_member(&e, at));
+    }
   }
   return out;
 }
@@ -237,7 +236,7 @@ static void draw_coordinates(Guess *k) {
 
 /* --- bodies --- */
 
-static int is_coordinate(const ExprGraph *g, const DrawnPoint *p) {
+static int moves(const ExprGraph *g, const DrawnPoint *p) {
   return p->n == 3 && expr_op(g, p->at[0]) == EX_SYM;
 }
 
@@ -252,7 +251,7 @@ static void draw_rotations(Guess *k) {
       r.at[c] = expr_symbol(b->g, b->m->coords.at[b->rotations.at[i] + c].q)->node;
       s.turn[c] = drawn_value(k->d, r.at[c], DIM_NONE);
     }
-    while (next < k->points.n && !is_coordinate(b->g, &k->points.at[next])) next++;
+    while (next < k->points.n && !moves(b->g, &k->points.at[next])) next++;
     if (next < k->points.n) {
       place_of(k, k->points.at[next].at, 3, s.a);
       s.text = k->points.at[next].text;

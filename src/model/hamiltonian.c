@@ -70,10 +70,10 @@ int adds_to_hamiltonian(Builder *b, const AstStmt *st) {
 int pair_fits(Builder *b, const AstStmt *st, const Entity *p, const Entity *q) {
   Span span = ast_expr(b->ast, st->lhs)->span;
   if (q->kind == ENT_NONE) return 0;
-  if (q->kind != ENT_COORD && !(q->kind == ENT_STATE && b->m->states.at[q->index].coordinate))
+  if (!is_coordinate(b, q))
     return diag_error(b->diags, span, "`%s` is %s, and only a coordinate has a momentum", q->name,
                       ent_kind_text(q->kind));
-  for (uint32_t i = 0; i < b->m->pairs.n; i++) {
+  for (uint32_t i = 0; i < b->m->pairs.n && entity_size(q); i++) {
     if (b->m->pairs.at[i].p == q->index) return diag_error(b->diags, span, "`%s` is a momentum itself", q->name);
     if (b->m->pairs.at[i].q == q->index) return diag_error(b->diags, span, "`%s` has two momenta", q->name);
   }

@@ -25,6 +25,7 @@ typedef struct {
   Unit unit;
   SymId z, rate;
   Expr flow;      /* right-hand side of z' = ...; 0: none yet, and always 0 for a coordinate */
+  Span flow_span; /* of z' = ... */
   int coordinate; /* declared by `coord`: see Model.first_order */
   int periodic;
 } State;
@@ -347,11 +348,12 @@ typedef struct {
 /* Values of a member before its slips: gap, rate, restitution, friction, tangential restitution, static friction. */
 enum { FAMILY_VALUES = 6 };
 
-/* A sum that is not written out. beside: its outer terms have more than the inner sum; sampled: the self-check takes a
- * sample of its turns. */
+/* A sum, or a part of its range lo .. hi, that is not written out. beside: its outer terms have more than the inner
+ * sum; sampled: the self-check takes a sample of its turns. */
 typedef struct {
   AstId outer;
   int beside, sampled;
+  int64_t lo, hi;
 } QuantifiedSum;
 
 typedef struct {

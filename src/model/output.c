@@ -79,9 +79,9 @@ static int add_value(Builder *b, const char *stem, uint32_t primes, const Entity
 /* Adds all members of a family that is named without index. */
 static void add_family(Builder *b, AstId id, const Target *p, const Entity *e) {
   Span span = ast_expr(b->ast, id)->span;
-  int64_t at[2] = {e->lo[0], e->lo[1]};
+  int64_t at[2];
   const char *stem = ast_text(b, p->stem);
-  do {
+  for (int more = first_member(e, at); more; more = next_member(e, at)) {
     const Entity *member = e->kind == ENT_LET || e->kind == ENT_OBSERVE ? find_member(b->ast, &b->members, e, at) : e;
     if (!member) continue;
     Value v = resolve_member(b, e, at, p->primes, span, IN_OUTPUT);
@@ -91,7 +91,7 @@ static void add_family(Builder *b, AstId id, const Target *p, const Entity *e) {
     Name name = member_name(b->ast, stem, at, e->ndims);
     if (p->part >= 0) name = label_of(b, name, p->part, 0);
     add_value(b, name, p->primes, member, span, &v, (OutputText){.id = id, .member = {at[0], at[1]}, .is_member = 1});
-  } while (next_member(e, at));
+  }
 }
 
 int add_error(Builder *b, const Exact *x, Span span) {

@@ -28,7 +28,7 @@ int quantified_tells_apart(const struct Quantified *q, const int64_t *pair) {
   return 1;
 }
 
-/* Two pairs of the last rows that differ in both indices, or in the only one. */
+/* Two pairs of the last rows that differ in both indices, or in the only one that has two values. */
 static int find_pairs(struct Quantified *q, Arena *arena) {
   enum { TRIED = 12 };
   VEC(int64_t) at = {0};
@@ -44,7 +44,7 @@ static int find_pairs(struct Quantified *q, Arena *arena) {
   }
   for (uint32_t x = 0; x < at.n; x += 2)
     for (uint32_t y = 0; y < x; y += 2) {
-      if (at.at[x] == at.at[y] || (q->inner && at.at[x + 1] == at.at[y + 1])) continue;
+      if ((at.at[x] == at.at[y] && (rows > 1 || !q->inner)) || (q->inner && at.at[x + 1] == at.at[y + 1])) continue;
       memcpy(q->pair[0], at.at + y, sizeof q->pair[0]);
       memcpy(q->pair[1], at.at + x, sizeof q->pair[1]);
       return 1;
@@ -347,7 +347,7 @@ int64_t quantified_part(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   return may_stay(ev, id) ? quantified_same_branches(ev, id, lo, hi) : hi;
 }
 
-int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi, int whole) {
+int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   Builder *b = ev->b;
   const AstExpr *x = ast_expr(b->ast, id);
   if (ev->sums && id == ev->sums->inner && ev->sums->pairs) {
@@ -383,7 +383,7 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi, int whole) {
     return -1;
   }
   q->turns = turns;
-  q->sampled = whole && has_many_turns(q, turns);
+  q->sampled = has_many_turns(q, turns);
   for (int k = 0; k < COMPONENTS; k++) q->inside[k] = expr_declare(b->g, SYM_LOCAL, 0, x->name, SIGN_UNKNOWN);
   ev->sums = q;
   vec_push(b->arena, &ev->loops, ((Loop){id, q->pair[0][0], q->pair[0][0], ev->terms.n, 0, 0}));
@@ -467,7 +467,7 @@ int quantified_next(Eval *ev, Value *v) {
   for (uint32_t c = 0; c < component_count(v) && r.e; c++)
     if (!(r.at[c] = component_sum(ev, q, c))) r.e = 0;
   if (q->failed) return *v = FAILED, 0;
-  if (r.e) vec_push(b->arena, &b->m->sums, ((QuantifiedSum){q->outer, q->beside, q->sampled}));
+  if (r.e) vec_push(b->arena, &b->m->sums, ((QuantifiedSum){q->outer, q->beside, q->sampled, q->lo, q->hi}));
   if (r.e && !q->beside) {
     *v = r;
     return 0;

@@ -48,7 +48,7 @@ struct Quantified {
 /* quantified_text.c: finds the inner sum, and all that the terms read; 0: the text has no such form. */
 int quantified_text(Eval *ev, struct Quantified *q);
 
-/* The last index from lo on up to which each `if` in the body of a sum over one index takes one branch. */
+/* The last index from lo on up to which each `if` in the terms of a sum takes one branch, those of lets, too. */
 int64_t quantified_same_branches(Eval *ev, AstId id, int64_t lo, int64_t hi);
 
 /* The range of j, affine in i; what an expression reads, without indices as numbers. 0: q->why, at q->where. */

@@ -156,20 +156,6 @@ static AstId taken_branch(Eval *ev, AstId id, const Indices *of, int depth) {
   return is ? yes : no;
 }
 
-int64_t quantified_same_branches(Eval *ev, AstId id, int64_t lo, int64_t hi) {
-  const Ast *ast = ev->b->ast;
-  const AstExpr *x = ast_expr(ast, id);
-  const Indices own = {.name = {x->name}, .is = {{.by_i = 1}}, .lo = lo, .hi = hi};
-  AstId yes, no;
-  int64_t end = hi;
-  for (AstId k = ast_expr(ast, x->c)->first; k <= x->c; k++) {
-    if (ast_expr(ast, k)->kind == AST_SUM) return hi;
-    if (!is_choice(ast, k, &yes, &no) || truth_at(ev, ast_expr(ast, k)->args, &own, MOST_DEPTH, lo) < 0) continue;
-    end = same_from(ev, ast_expr(ast, k)->args, &own, MOST_DEPTH, lo, end);
-  }
-  return end;
-}
-
 /* In rows and turns: i = lo + row, j = from(lo) + turn. */
 Subscript quantified_turns(const struct Quantified *q, Affine x) {
   int64_t j0 = q->from.first + q->from.by_i * q->lo;
@@ -198,18 +184,24 @@ static const AstStmt *only_definition(const Builder *b, const Entity *e) {
 static int note_reads(Eval *ev, struct Quantified *q, AstId first, AstId last, const Indices *of,
                       unsigned char *skip, int depth);
 
+/* Names of the indices of a let whose member is read at `at`, and what they are in i and j; 0: q->why. */
+static int indices_of_let(const Ast *ast, const AstStmt *let, const Affine *at, Indices *of) {
+  uint32_t n = 0;
+  for (AstId k = let->dims; k; k = ast_expr(ast, k)->next, n++) {
+    if (ast_expr(ast, k)->kind != AST_BIND || n == 2) return 0;
+    of->name[n] = ast_expr(ast, k)->name;
+    of->is[n] = at[n];
+  }
+  return 1;
+}
+
 /* Notes what the members of a family of lets read. */
 static int note_let(Eval *ev, struct Quantified *q, AstId id, const Read *r, int depth) {
   const Ast *ast = ev->b->ast;
   const AstStmt *st = only_definition(ev->b, r->e);
   Indices of = {.lo = q->lo, .hi = q->hi};
-  uint32_t n = 0;
   if (!st || depth == 0) return refused(q, id, "these lets depend on each other, or on several statements");
-  for (AstId k = st->dims; k; k = ast_expr(ast, k)->next, n++) {
-    if (ast_expr(ast, k)->kind != AST_BIND || n == 2) return refused(q, id, "these lets are defined one by one");
-    of.name[n] = ast_expr(ast, k)->name;
-    of.is[n] = r->at[n];
-  }
+  if (!indices_of_let(ast, st, r->at, &of)) return refused(q, id, "these lets are defined one by one");
   q->has_lets = 1;
   return note_reads(ev, q, ast_expr(ast, st->rhs)->first, st->rhs, &of, NULL, depth - 1);
 }
@@ -291,6 +283,54 @@ static int note_reads(Eval *ev, struct Quantified *q, AstId first, AstId last, c
     q->counts[k - first] = 1;
   }
   return 1;
+}
+
+/* The statement of the family of lets that the node reads at indices affine in i and j; NULL: it reads none. */
+static const AstStmt *let_read(Eval *ev, AstId id, const Indices *of, Affine *at) {
+  const Ast *ast = ev->b->ast;
+  const AstExpr *x = ast_expr(ast, id);
+  int ambiguous;
+  uint32_t n = 0;
+  if (x->kind != AST_INDEX || ast_expr(ast, x->a)->kind != AST_NAME) return NULL;
+  for (AstId k = x->args; k; k = ast_expr(ast, k)->next, n++)
+    if (n == 2 || !is_affine(ev, k, of, MOST_DEPTH, &at[n])) return NULL;
+  const Entity *e = scope_find(&ev->b->scope, ast_expr(ast, x->a)->name, ev->effect, &ambiguous);
+  return e && !ambiguous && e->kind == ENT_LET && e->ndims == n ? only_definition(ev->b, e) : NULL;
+}
+
+/* Lowers of->hi to the last index up to which each `if` of the text, through lets by index, takes the branch that it
+ * takes for of->lo. 0: lets depend on each other. */
+static int same_branches(Eval *ev, AstId id, Indices *of, int depth) {
+  const Ast *ast = ev->b->ast;
+  AstId first = ast_expr(ast, id)->first, yes, no;
+  unsigned char *skip = ARENA_ARRAY(ev->b->arena, unsigned char, id - first + 1);
+  for (AstId k = id + 1; k-- > first;) {
+    Affine at[2];
+    const AstStmt *let = skip[k - first] ? NULL : let_read(ev, k, of, at);
+    Indices in = {.lo = of->lo, .hi = of->hi};
+    if (let && indices_of_let(ast, let, at, &in) && (!depth || !same_branches(ev, let->rhs, &in, depth - 1))) return 0;
+    of->hi = in.hi;
+    if (skip[k - first] || !is_choice(ast, k, &yes, &no)) continue;
+    AstId condition = ast_expr(ast, k)->args;
+    int is = truth_at(ev, condition, of, MOST_DEPTH, of->lo);
+    if (is < 0) continue;
+    of->hi = same_from(ev, condition, of, MOST_DEPTH, of->lo, of->hi);
+    mark_nodes(ev, is ? no : yes, first, skip);
+  }
+  return 1;
+}
+
+int64_t quantified_same_branches(Eval *ev, AstId id, int64_t lo, int64_t hi) {
+  const Ast *ast = ev->b->ast;
+  const AstExpr *x = ast_expr(ast, id);
+  Indices own = {.name = {x->name}, .is = {{.by_i = 1}, {.by_j = 1}}, .lo = lo, .hi = hi};
+  for (AstId k = ast_expr(ast, x->c)->first; k <= x->c; k++)
+    if (ast_expr(ast, k)->kind == AST_SUM) own.name[1] = ast_expr(ast, k)->name;
+  for (int64_t before = hi + 1; own.hi < before;) {
+    before = own.hi; /* in shorter ranges more indices are affine */
+    if (!same_branches(ev, x->c, &own, MOST_DEPTH)) return hi;
+  }
+  return own.hi;
 }
 
 /* Marks the terms beside the one with the inner sum: they are written out, whatever they contain. */

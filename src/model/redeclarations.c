@@ -51,30 +51,8 @@ static Name setting_key(Builder *b, const AstStmt *st, const char *owner) {
   }
 }
 
-/* A setting of all members after one of some, `start x[3] = 5, x = 1`, which it would replace. */
-static void check_general_first(Builder *b, Scope *said, const AstStmt *st, const char *owner) {
-  if (st->kind != STMT_START && st->kind != STMT_SET) return;
-  int some = 0, primes = 0;
-  AstId id = st->lhs;
-  for (;; id = ast_expr(b->ast, id)->a) {
-    const AstExpr *x = ast_expr(b->ast, id);
-    int of_member = x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_INDEX;
-    if (x->kind != AST_PRIME && x->kind != AST_INDEX && !of_member) break;
-    some |= x->kind == AST_INDEX;
-    primes += x->kind == AST_PRIME;
-  }
-  Name key = intern_printf(b, "some of %s%s%d", owner, ast_text(b, id), primes);
-  const Entity *old = scope_own(said, key, NULL);
-  if (some && !old) scope_add(said, (Entity){.name = key, .span = st->span});
-  if (some || !old) return;
-  diag_error(b->diags, st->span, "`%s` is given to all members after one of them, whose value is lost" HELP
-             "write it before the member's", ast_text(b, st->lhs));
-  diag_also(b->diags, old->span, "the member's value");
-}
-
 static void check_setting(Builder *b, Scope *said, const AstStmt *st, const char *owner) {
   Name key = setting_key(b, st, owner);
-  check_general_first(b, said, st, owner);
   const Entity *old = key ? scope_own(said, key, NULL) : NULL;
   if (key && !old) scope_add(said, (Entity){.name = key, .span = st->span});
   if (!old) return;

@@ -3,7 +3,7 @@
 #include "model/resolve_impl.h"
 
 /* Whether s is a coordinate, and no momentum or state. */
-static int is_coordinate(const Model *m, const Symbol *s) {
+static int is_coordinate_symbol(const Model *m, const Symbol *s) {
   if (s->kind != SYM_STATE) return s->kind == SYM_COORD;
   for (uint32_t k = 0; k < m->pairs.n; k++)
     if (m->pairs.at[k].q == s->index) return 1;
@@ -25,7 +25,7 @@ Value action_value(Eval *ev, const AstExpr *x) {
   if (why && !(m->hamiltonian && !m->first_order))
     return refuse(b, x->span, "an action variable needs a phase space, as brackets do: %s", why);
   const Symbol *s = !v->n && expr_op(b->g, v->e) == EX_SYM ? expr_sym_of(b->g, v->e) : NULL;
-  if (!s || !is_coordinate(m, s))
+  if (!s || !is_coordinate_symbol(m, s))
     return refuse(b, ast_expr(b->ast, x->args)->span,
                   "`action` takes the name of a coordinate, and `%s` is %s" HELP "write `action(%s)`",
                   ast_short(b, x->args),

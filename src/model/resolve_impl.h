@@ -164,7 +164,7 @@ int64_t quantified_part(Eval *ev, AstId id, int64_t lo, int64_t hi);
 /* quantified_sum.c: starts the sum `id` over i in lo .. hi, or the sum inside it, as one over representative pairs;
  * 0: it has no such form; -1: its value is set. quantified_next takes the value v of a body: 1: evaluate it again;
  * 0: *v is that of the sum. */
-int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi, int whole);
+int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi);
 int quantified_next(Eval *ev, Value *v);
 
 /* Whether the name of an index stands for its symbol there, as all turns have one body. */

@@ -152,8 +152,7 @@ static const Entity *momentum_of(const Eval *ev, Name name) {
       scope_find(&b->scope, name, ev->effect, &ambiguous))
     return NULL;
   const Entity *e = scope_find(&b->scope, intern(b->ast->names, name + 2), ev->effect, &ambiguous);
-  int moves = e && (e->kind == ENT_COORD || (e->kind == ENT_STATE && b->m->states.at[e->index].coordinate));
-  return moves && !ambiguous ? e : NULL;
+  return e && is_coordinate(b, e) && !ambiguous ? e : NULL;
 }
 
 /* dL/dq' of a coordinate, or of member `at` of a family. */
@@ -229,6 +228,7 @@ static void report_range(Builder *b, const Entity *e, const int64_t *at, Span sp
   diag_drop_notes(b->diags, span); /* that a sum is written out, since an index leaves the range */
   diag_error(b->diags, span, "`%s` is out of range%s", member_name(b->ast, e->name, at, e->ndims), where);
   if (in_range(e, at)) diag_help(b->diags, "`%s` is defined in %s, but not for this member", e->name, sb_text(&s));
+  else if (!entity_size(e)) diag_help(b->diags, "`%s` has no members", e->name);
   else diag_help(b->diags, "the members are `%s[%s]`", e->name, sb_text(&s));
 }
 

@@ -312,10 +312,10 @@ int resolve_whole(Builder *b, AstId id, Name effect, int64_t *out) {
 }
 
 /* Starts the next part of a sum over lo .. hi; 0: its value is set. */
-static int begin_part(Eval *ev, AstId id, int64_t lo, int64_t hi, int first) {
+static int begin_part(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   Builder *b = ev->b;
   int64_t end = quantified_part(ev, id, lo, hi);
-  int quantified = quantified_begin(ev, id, lo, end, first && end == hi);
+  int quantified = quantified_begin(ev, id, lo, end);
   if (quantified < 0) return 0;
   if (!quantified) {
     vec_push(b->arena, &ev->loops, ((Loop){id, lo, end, ev->terms.n, 0, 0}));
@@ -338,7 +338,7 @@ int loop_begin(Eval *ev, AstId id) {
     *r = a_value(expr_int(b->g, x->kind == AST_PRODUCT), x->kind == AST_PRODUCT ? DIM_NONE : DIM_ANY, 1);
     return 0;
   }
-  return range_fits(b, lo, hi, x->span) && quantified_fits(ev, id) && begin_part(ev, id, lo, hi, 1);
+  return range_fits(b, lo, hi, x->span) && quantified_fits(ev, id) && begin_part(ev, id, lo, hi);
 }
 
 /* Shape and dimension of sum(...) or product(...) from its terms, and whether it is bare; 0, reported, when terms
@@ -415,7 +415,7 @@ int loop_next(Eval *ev) {
   ev->index.n--;
   ev->loops.n--;
   int more = v.e && done.end < done.last;
-  if (more && begin_part(ev, done.construct, done.end + 1, done.last, 0)) {
+  if (more && begin_part(ev, done.construct, done.end + 1, done.last)) {
     ev->loops.at[ev->loops.n - 1].base = done.base;
     return 1;
   }

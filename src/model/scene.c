@@ -347,13 +347,15 @@ static const AstStmt *last_of(const Builder *b, int (*is)(const AstStmt *st)) {
 static void each_effective(Builder *b, void (*apply)(Builder *b, const AstStmt *st)) {
   const AstStmt *none = last_of(b, is_use_none);
   int before = none != NULL;
-  for (const AstStmt **s = b->chain; *s; s++)
+  b->in_scene = 1;
+  for (const AstStmt **s = b->chain; *s; s++, b->settings.n = b->given.n = 0)
     for (const AstStmt *x = (*s)->body; x; x = x->next) {
       before &= x != none;
       if (is_dropped(b, x, before, s[1] != NULL)) continue;
       int hidden = apply == scene_statement && x->kind == STMT_OUTPUT && has_own_outputs(s + 1);
       apply_in_chain(b, s, x, hidden ? set_every : apply);
     }
+  b->in_scene = 0;
 }
 
 /* Monitors and measures accumulate along the chain, and may add outputs; `monitor none` drops earlier monitors. */

@@ -42,10 +42,10 @@ const Entity *scope_find(const Scope *s, Name name, Name effect, int *ambiguous)
 
 void scope_add(Scope *s, Entity e);
 
-/* Number of scalars: members times components. */
+/* Number of scalars: members times components; 0: a family without members, whose index names nothing. */
 static inline uint32_t entity_size(const Entity *e) {
   uint64_t n = e->parts ? e->parts : 1;
-  for (int k = 0; k < e->ndims; k++) n *= (uint64_t)(e->hi[k] - e->lo[k] + 1);
+  for (int k = 0; k < e->ndims; k++) n *= e->hi[k] < e->lo[k] ? 0 : (uint64_t)(e->hi[k] - e->lo[k] + 1);
   return (uint32_t)n;
 }
 

@@ -116,7 +116,7 @@ static int may_be_given(Builder *b, const AstExpr *x, const AstExpr *name, const
     return 0;
   }
   if (p->primes && e->kind == ENT_STATE) {
-    int is_coord = b->m->states.at[e->index].coordinate;
+    int is_coord = is_coordinate(b, e);
     if (is_coord)
       diag_error(b->diags, x->span, "`%s'` follows from the coordinates%s: %s, and the motion of first order",
                  name->name, b->m->hamiltonian ? " and momenta" : "", no_inertia(b->m));
@@ -160,7 +160,7 @@ void set_motion(Builder *b, const AstStmt *st) {
   if (!e) return;
   if (e->kind == ENT_NONE) return;
   if (!may_be_given(b, x, name, &p, e, exact)) return;
-  if (e->kind == ENT_COORD && !p.primes && !exact && e->parts != ROTATION)
+  if (e->kind == ENT_COORD && !p.primes && !exact && e->parts != ROTATION && entity_size(e))
     warn_of_degrees(b, &b->m->coords.at[e->index], st->rhs);
   if (st->exactly == START_EXACTLY && !b->m->scene.exactly.end) b->m->scene.exactly = st->span;
   StartOf of = {.kind = e->kind, .velocity = p.primes > 0, .guess = st->exactly == START_GUESS,

@@ -214,10 +214,6 @@ static void map_time(Mapping *p, AstId rhs, Name effect) {
   if (to) add_move(p, b->m->time, to, ast_expr(b->ast, rhs)->span);
 }
 
-static int is_coordinate(const Builder *b, const Entity *e) {
-  return e->kind == ENT_COORD || (e->kind == ENT_STATE && b->m->states.at[e->index].coordinate);
-}
-
 static void report_target(Builder *b, const Target *p, const AstExpr *name, const Entity *e) {
   const char *what = p->primes ? "a velocity" : ent_kind_text(e->kind);
   diag_error(b->diags, name->span, "`%s` is %s: a symmetry maps coordinates and t", source_text(b, name->span), what);

@@ -96,26 +96,26 @@ static void finish(DirectEval *t, Frame *f, Frame *caller) {
 
 /* --- sums and products --- */
 
-/* Whether only some terms of the sum take part: the model does not write it out, nor the one around it. *none: no term
- * of an inner sum does, in this row. */
-static int is_sampled(const DirectEval *t, const Frame *f, AstId id, int *beside, int *none) {
-  const TextLoop *around = f->loops.n ? &f->loops.at[f->loops.n - 1] : NULL;
-  *beside = *none = 0;
+/* The part of the sum around index `at` of which only some terms take part; NULL: all do. */
+static const QuantifiedSum *sampled_part(const DirectEval *t, AstId id, int64_t at) {
   for (uint32_t k = 0; t->samples && k < t->m->sums.n; k++) {
-    if (t->m->sums.at[k].outer != id || !t->m->sums.at[k].sampled) continue;
-    *beside = t->m->sums.at[k].beside;
-    return 1;
+    const QuantifiedSum *s = &t->m->sums.at[k];
+    if (s->outer == id && s->sampled && at >= s->lo && at <= s->hi) return s;
   }
-  if (!around || !around->samples) return 0;
-  *none = !loop_samples(around->at - around->lo, around->hi - around->lo + 1);
-  return 1;
+  return NULL;
+}
+
+static int takes_row(const QuantifiedSum *s, int64_t at) {
+  return !s || loop_samples(at - s->lo, s->hi - s->lo + 1);
 }
 
 /* Next index of the loop; past its end: none. */
-static int64_t next_index(const TextLoop *l) {
-  int64_t at = l->at + 1;
-  while (l->samples && !l->beside && at <= l->hi && !loop_samples(at - l->lo, l->hi - l->lo + 1)) at++;
-  return at;
+static int64_t next_index(const DirectEval *t, const TextLoop *l) {
+  for (int64_t at = l->at + 1; at <= l->hi; at++) {
+    const QuantifiedSum *s = l->inner ? NULL : sampled_part(t, l->construct, at);
+    if (l->inner ? loop_samples(at - l->lo, l->hi - l->lo + 1) : takes_row(s, at) || s->beside) return at;
+  }
+  return l->hi + 1;
 }
 
 /* Starts a loop; 0: empty or unknown range, the value is set. */
@@ -129,9 +129,10 @@ static int loop_enter(DirectEval *t, Frame *f, AstId id) {
   }
   *r = number_of(t, num_int(x->kind == AST_PRODUCT));
   if (lo > hi) return 0;
-  int beside, none, samples = is_sampled(t, f, id, &beside, &none);
-  if (none) return 0;
-  TextLoop l = {.construct = id, .lo = lo, .at = lo, .hi = hi, .samples = samples, .beside = beside};
+  const TextLoop *around = f->loops.n ? &f->loops.at[f->loops.n - 1] : NULL;
+  const QuantifiedSum *s = around ? sampled_part(t, around->construct, around->at) : NULL;
+  if (!takes_row(s, around ? around->at : 0)) return 0; /* a row with terms beside its inner sum */
+  TextLoop l = {.construct = id, .lo = lo, .at = lo, .hi = hi, .inner = s != NULL};
   vec_push(t->arena, &f->loops, l);
   vec_push(t->arena, &f->index, ((IndexVar){x->name, lo}));
   return 1;
@@ -143,7 +144,7 @@ static int loop_again(DirectEval *t, Frame *f) {
   const AstExpr *x = ast_expr(t->b->ast, l->construct);
   const TextValue *term = &f->value[x->c - f->first];
   l->sum = l->terms++ == 0 ? *term : text_pair(t, x->kind == AST_SUM ? AST_ADD : AST_MUL, &l->sum, term);
-  l->at = next_index(l);
+  l->at = next_index(t, l);
   if (l->at <= l->hi && l->sum.at[0]) {
     f->index.at[f->index.n - 1].at = l->at;
     return 1;

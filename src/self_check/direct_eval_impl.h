@@ -7,7 +7,7 @@
 typedef struct {
   AstId construct;
   int64_t lo, at, hi;
-  int samples, beside; /* only some of the terms take part: loop_samples; or all, but of the sum inside */
+  int inner; /* the sum inside one of which only some terms take part: loop_samples */
   TextValue sum; /* sum or product of the first `terms` terms */
   uint64_t terms;
 } TextLoop;

@@ -5,9 +5,14 @@
 
 #include <math.h>
 
+#include "base/dense_matrix.h"
+
 #include "mech/lagrange.h"
 #include "sym/diff.h"
+#include "sym/expr_eval.h"
+#include "sym/normal_form.h"
 #include "sym/print.h"
+#include "sym/prove.h"
 #include "sym/simplify.h"
 
 const SolutionSpace *noether_space_at(SymmetrySearch *s, uint32_t choice) {
@@ -342,19 +347,46 @@ static const char *stopped_note(Arena *a, const SearchLimit *limit) {
       limit->seconds, 10 * limit->seconds);
 }
 
-/* The usual symmetries instead, if the search was none, or found fewer, as its random equations are too badly
- * conditioned to tell all solutions. */
+FoundSymmetries join_symmetries(const Eqns *e, const FoundSymmetries *first, const FoundSymmetries *second) {
+  enum { STATES = 4 };
+  Arena *a = e->m->arena;
+  FoundSymmetries all = {0};
+  uint32_t n = eqns_coordinates(e), width = STATES * (n + 1), rank = 0;
+  long double *symbols = ARENA_ARRAY(a, long double, expr_symbol_count(e->g) + 1);
+  long double *rows = ARENA_ARRAY(a, long double, (size_t)width * (first->all.n + second->all.n + 1));
+  for (uint32_t k = 0; k < first->all.n + second->all.n; k++) {
+    const FoundSymmetry *x = k < first->all.n ? &first->all.at[k] : &second->all.at[k - first->all.n];
+    long double *row = rows + (size_t)rank * width;
+    for (uint32_t i = 0; i < STATES; i++) { /* as functions of the coordinates and of time */
+      sample_state(e->g, i + 1, symbols);
+      expr_eval(e->g, x->by.xi, n, symbols, row + (size_t)i * (n + 1));
+      expr_eval(e->g, &x->by.tau, 1, symbols, row + (size_t)i * (n + 1) + n);
+    }
+    if (dense_gram_schmidt(width, row, rows, rank) < 1e-9L) continue; /* rounding is 1e-18 */
+    vec_push(a, &all.all, *x);
+    rank++;
+  }
+  return all;
+}
+
+/* Adds the usual symmetries that the search has not found, as its random equations are too badly conditioned to tell
+ * all solutions, or time was short. */
 static void compare_with_usual(SymmetrySearch *s) {
-  FoundSymmetries usual = {0};
-  int stopped = s->limit->stopped, none = !s->out->searched || (stopped && !s->out->all.n);
+  FoundSymmetries usual = {0}, *out = s->out;
+  int stopped = s->limit->stopped, none = !out->searched || (stopped && !out->all.n);
   try_usual_symmetries(s->e, &usual, s->limit);
-  if (!none && usual.all.n <= s->out->all.n) {
+  uint32_t found = out->all.n, missing = join_symmetries(s->e, out, &usual).all.n - found;
+  if (!none && !missing) {
     s->limit->stopped = stopped;
     return;
   }
-  *s->out = usual;
-  s->out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts and rotations of all coordinates "
-                   "of a kind together";
+  FoundSymmetries joined = join_symmetries(s->e, &usual, out);
+  joined.searched = 1;
+  joined.attempt = out->attempt;
+  joined.unproved = none || out->unproved < missing ? 0 : out->unproved - missing;
+  *out = joined;
+  out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts, rotations, scalings and expansions "
+                "of all coordinates of a kind together";
   s->out->note = "the linear equations of the full search could not be solved reliably";
 }
 

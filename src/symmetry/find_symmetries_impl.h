@@ -36,6 +36,12 @@ int noether_add_family(SymmetrySearch *s, const Family *f);
 /* Whether the model has more coordinates than the search for all symmetries takes: a hundred. */
 int too_large_to_search(const Eqns *e);
 
-/* Tries the energy, momenta of cyclic coordinates, and translations, boosts and rotations of all coordinates of a
- * kind. */
+/* A scaling that keeps the action, with one exponent for all coordinates of a kind, by numbers; kappa is 0. */
+int scaling_of_kinds(const Eqns *e, Scaling *found, SearchLimit *limit);
+
+/* The generators of both lists that are independent: those of `first`, then of `second`. */
+FoundSymmetries join_symmetries(const Eqns *e, const FoundSymmetries *first, const FoundSymmetries *second);
+
+/* Tries the energy, momenta of cyclic coordinates, translations, boosts and rotations of all coordinates of a kind,
+ * scalings and expansions. */
 void try_usual_symmetries(Eqns *e, FoundSymmetries *out, SearchLimit *limit);

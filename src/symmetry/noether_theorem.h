@@ -54,6 +54,10 @@ typedef struct {
   int power_unknown; /* the generator moves t, and L contains an input of unknown rate: power is not dQ/dt */
 } Noether;
 
+/* Whether along the direction seed[symbols], by symbol, each turn of a quantified sum moves as the one in whose symbols
+ * its body is written: that body then tells the change of the sum. */
+int turns_move_alike(const Eqns *e, Expr nest, const Expr *seed, uint32_t symbols);
+
 /* Verdict, charge and balance of a generator. Needs a Lagrangian. */
 Noether noether_prove(const Eqns *e, const Generator *by);
 

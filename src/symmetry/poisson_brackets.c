@@ -11,6 +11,7 @@
 #include "sym/expr_eval.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"
+#include "sym/sum_nest.h"
 
 enum { CHARGES_MOST = 48, SPARE_STATES = 6 };
 
@@ -24,6 +25,7 @@ typedef struct {
   uint32_t energy;      /* number of the energy if no bracket contains it, see energy_apart; r: there is none such */
   EvalTape *tape;       /* [r] charges, [r*n] dQ/dq, [r*n] dQ/dv, [r] with_energy, entries of M or omega, of dp/dq */
   uint32_t roots;
+  double turns;         /* of the quantified sums on the tape */
   Entries form, slope;  /* of M or omega; of dp/dq: those that are not 0 */
   int is_diagonal;      /* form */
   Choices choices;
@@ -91,6 +93,9 @@ static void make_tape(BracketFit *w) {
   for (uint32_t k = 0; k < w->form.n; k++) roots[count++] = w->form.at[k].e;
   for (uint32_t k = 0; k < w->slope.n; k++) roots[count++] = w->slope.at[k].e;
   w->roots = (uint32_t)count;
+  ExprList l = expr_topo(w->g, roots, w->roots);
+  for (uint32_t k = 0; k < l.n; k++)
+    if (expr_op(w->g, l.at[k]) == EX_NEST) w->turns += (double)expr_sum_turns(w->g, l.at[k]);
   w->tape = eval_tape(w->g, roots, w->roots);
 }
 
@@ -166,6 +171,30 @@ static void scale_charges(const BracketFit *w, Sample *x) {
   }
 }
 
+static uint32_t draws_of(const BracketFit *w) { return w->n <= 16 ? 1 : w->n <= 300 ? 8 : 2; }
+
+/* Values of all roots at a random state; 0: they are not finite. Of many bodies some nearly touch, and the rounding of
+ * their forces would drown the other charges: several states are drawn, every second one spread wide, and the one with
+ * the smallest derivatives is kept. */
+static int draw_state(const BracketFit *w, uint32_t choice, uint32_t seed, long double *symbols, long double *out) {
+  uint32_t draws = draws_of(w);
+  long double *one = ARENA_ARRAY(w->scratch, long double, w->roots + 1), least = HUGE_VALL;
+  for (uint32_t d = 0; d < draws; d++) {
+    int finite = 1;
+    sample_state(w->g, 50 + seed + 1000 * d, symbols);
+    for (uint32_t i = 0; i < w->n && d % 2; i++) symbols[w->q[i]] *= w->n;
+    for (uint32_t k = 0; k < w->choices.n; k++)
+      symbols[w->choices.param[k]] = w->choices.at[choice][w->choices.param[k]];
+    eval_run(w->tape, symbols, one);
+    for (uint32_t k = 0; k < w->roots; k++) finite = finite && isfinite(one[k]);
+    long double largest = dense_largest(one + w->r, (size_t)w->r * w->n);
+    if (!finite || largest >= least) continue;
+    least = largest;
+    memcpy(out, one, w->roots * sizeof *out);
+  }
+  return least < HUGE_VALL;
+}
+
 /* Evaluates charges and brackets at random states. 0: too few states have finite values. */
 static int draw_sample(const BracketFit *w, uint32_t choice, Sample *x) {
   uint32_t count = expr_symbol_count(w->g) + 1, done = 0;
@@ -173,14 +202,8 @@ static int draw_sample(const BracketFit *w, uint32_t choice, Sample *x) {
               *out = ARENA_ARRAY(w->scratch, long double, w->roots + 1);
   double n = w->n, work = w->form.n > 8 * w->n ? n * n * n : 0; /* elimination skips zeros */
   for (uint32_t seed = 1; done < x->states && seed < 20 + 4 * x->states; seed++) {
-    int finite = 1;
     if (!search_goes_on(w->limit, work)) return 0;
-    sample_state(w->g, 50 + seed, symbols);
-    for (uint32_t k = 0; k < w->choices.n; k++)
-      symbols[w->choices.param[k]] = w->choices.at[choice][w->choices.param[k]];
-    eval_run(w->tape, symbols, out);
-    for (uint32_t k = 0; k < w->roots; k++) finite = finite && isfinite(out[k]);
-    if (!finite || !to_phase_space(w, out)) continue;
+    if (!draw_state(w, choice, seed, symbols, out) || !to_phase_space(w, out)) continue;
     memcpy(x->charges + (size_t)done * (w->r + 1), out, w->r * sizeof *out);
     x->charges[(size_t)done * (w->r + 1) + w->r] = 1;
     all_brackets(w, out, x->brackets + (size_t)done * w->pairs, x->size);
@@ -209,7 +232,8 @@ static void check_fit(const BracketFit *w, const Sample *x, size_t pair, long do
 static int fit(const BracketFit *w, uint32_t choice, long double *c) {
   uint32_t m = w->r + 1;
   Sample x = sample_new(w, m + SPARE_STATES);
-  if (!search_goes_on(w->limit, 0) || !draw_sample(w, choice, &x)) return 0;
+  enum { TURN = 40 }; /* operations of one turn of a sum */
+  if (!search_goes_on(w->limit, TURN * w->turns * draws_of(w) * x.states) || !draw_sample(w, choice, &x)) return 0;
   if (w->energy < w->r) x.charges[w->energy * m + w->energy] = 1; /* an energy apart keeps what is left there: 0 */
   for (size_t pair = 0; pair < w->pairs; pair++)
     for (size_t s = 0; s < m; s++) c[pair * m + s] = x.brackets[s * w->pairs + pair];

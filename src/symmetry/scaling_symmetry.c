@@ -1,6 +1,7 @@
-/* Scalings that multiply the action: exponents from the kernel of linear equations at random states, the same
- * rationals at two choices of parameters, then proved term by term. In large models the coordinates of a kind have one
- * exponent, and one turn stands for all of a quantified sum. */
+/* Scalings that multiply the action, or leave it: exponents from the kernel of linear equations at random states, the
+ * same rationals at two choices of parameters, then proved term by term. In large models, and where
+ * the action is left, the coordinates of a kind have one exponent; in large models one turn stands for all of a
+ * quantified sum. */
 #include <math.h>
 
 #include "base/dense_matrix.h"
@@ -21,6 +22,7 @@ typedef struct {
   Expr L;                 /* with one turn of each quantified sum of a large model */
   Scaling *out;
   SearchLimit *limit;
+  int keeps;              /* the action: kappa is 0 */
   int found;
 } ScalingSearch;
 
@@ -34,7 +36,7 @@ static void choose_unknowns(ScalingSearch *w) {
   CoordinateNames names = coordinate_names(w->e);
   w->unknowns = 0;
   for (uint32_t i = 0; i < w->n; i++) {
-    uint32_t k = too_large_to_search(w->e) ? 0 : w->unknowns;
+    uint32_t k = w->keeps || too_large_to_search(w->e) ? 0 : w->unknowns;
     while (k < w->unknowns && !name_same_kind(&names, first[k], i)) k++;
     column[i] = k;
     if (k == w->unknowns) first[w->unknowns++] = i;
@@ -97,36 +99,20 @@ static const long double *exponents(ScalingSearch *w, const long double *paramet
   for (size_t r = 0; r < rows; r++) {
     if (!search_goes_on(w->limit, 0)) return NULL;
     sample_state(g, 100 * turn + (uint32_t)r + 3, symbols);
+    for (uint32_t i = 0; i < n && w->keeps; i++) symbols[q_of(w, i)] *= n; /* bodies that nearly touch drown the rest */
     for (SymId s = 1; s < count; s++)
       if (expr_symbol(g, s)->kind == SYM_PARAM) symbols[s] = parameters[s];
     eval_run(tape, symbols, out);
     if (!put_row(w, out, symbols, m + r * width)) return NULL;
   }
   DenseRows kernel = dense_kernel(w->scratch, rows, width, m, 1e-12L);
-  return kernel.n == 1 && kernel.gap > 1e4L ? kernel.at : NULL;
-}
-
-/* Exponents of a symbol and of a node; *known 0: it is no symbol. */
-static Num exponent_of(const ScalingSearch *w, const Num *of_symbol, Expr x, int *known) {
-  *known = expr_op(w->g, x) == EX_SYM;
-  return *known ? of_symbol[expr_sym_id(w->g, x)] : num_int(0);
-}
-
-/* Whether all turns of the sum scale as the one that it is written in: their arguments have its exponents. */
-static int turns_scale_alike(const ScalingSearch *w, Expr nest, const Num *of_symbol) {
-  const SumNest *s = expr_sum_nest(w->g, nest);
-  if (s->near || !has_own_symbols(w, s)) return 0; /* near: the range of the test would move */
-  for (uint32_t k = 0; k < s->nreads; k++) {
-    const NestRead *read = &s->reads[k];
-    int64_t lo, hi, step = subscript_step(&read->at);
-    int known = 1;
-    if (!loop_extent(&s->range, &read->at, &lo, &hi)) continue;
-    for (int64_t x = lo; x <= hi; x += step ? step : 1) {
-      Num its = exponent_of(w, of_symbol, expr_sum_arg(w->g, nest, (uint32_t)x), &known);
-      if (!known || !num_equal(its, of_symbol[read->symbol])) return 0;
-    }
+  if (kernel.n != 1 || kernel.gap <= 1e4L) return NULL;
+  long double largest = dense_largest(kernel.at, width);
+  for (uint32_t j = 0; j < width; j++) {
+    kernel.at[j] /= largest;
+    if (fabsl(kernel.at[j]) < 1e-8L) kernel.at[j] = 0;
   }
-  return 1;
+  return kernel.at;
 }
 
 /* Whether delta x = (kappa - beta) x. */
@@ -151,7 +137,7 @@ static int is_proved(ScalingSearch *w) {
   for (SymId s = 1; s < symbols; s++)
     if (!num_is_zero(power[s])) seed[s] = expr_scale(g, power[s], node(w, s));
   for (ExprPair term = {0}; expr_next_pair(g, w->e->lagrangian, EX_SUM, &term);) {
-    int is_cell = expr_op(g, term.of) == EX_CELL && turns_scale_alike(w, expr_cell_nest(g, term.of), power);
+    int is_cell = expr_op(g, term.of) == EX_CELL && turns_move_alike(w->e, expr_cell_nest(g, term.of), seed, symbols);
     const SumNest *s = is_cell ? expr_sum_nest(g, expr_cell_nest(g, term.of)) : NULL;
     for (uint32_t k = 0; is_cell && k < s->nshares; k++)
       if (!scales(w, (ExprSeeds){.at = seed, .n = symbols}, s->shares[k].value)) return 0;
@@ -168,6 +154,17 @@ static void make_whole(Num *x, uint32_t n) {
   for (uint32_t i = 0; i < n; i++) x[i] = num_div(x[i], common);
 }
 
+/* The exponent near x, a ratio of small numbers: forces of many bodies may leave six digits, and each guess is
+ * proved. */
+static int small_ratio(long double x, Num *out) {
+  enum { DENOMINATOR_MOST = 12 };
+  for (int64_t d = 1; d <= DENOMINATOR_MOST && fabsl(x) < 100; d++) {
+    *out = num_ratio((int64_t)roundl(x * (long double)d), d);
+    if (fabsl(x - (long double)num_value(*out)) < 1e-6L) return 1;
+  }
+  return 0;
+}
+
 static void scaling_work(Arena *scratch, void *data) {
   ScalingSearch *w = data;
   w->scratch = scratch;
@@ -176,24 +173,29 @@ static void scaling_work(Arena *scratch, void *data) {
   Choices choices = choices_new(scratch, w->e, 0, 0);
   const long double *x = exponents(w, choices.at[CHOICE_FIRST], 1),
                     *y = x ? exponents(w, choices.at[CHOICE_SECOND], 2) : NULL;
-  uint32_t beta = w->unknowns, kappa = beta + 1;
+  uint32_t beta = w->unknowns, kappa = beta + 1, unit = w->keeps ? beta : kappa;
   Num *whole = ARENA_ARRAY(scratch, Num, kappa + 1), *alpha = ARENA_ARRAY(w->e->m->arena, Num, w->n + 1), other;
-  if (!y || fabsl(x[kappa]) < 1e-9L || fabsl(y[kappa]) < 1e-9L) return; /* 0: a symmetry in Noether's sense */
+  if (!y || x[unit] == 0 || y[unit] == 0 || w->keeps != (x[kappa] == 0)) return;
+  int (*recognise)(long double, Num *) = w->keeps ? small_ratio : recognise_rational;
   for (uint32_t i = 0; i <= kappa; i++)
-    if (!recognise_rational(x[i] / x[kappa], &whole[i]) || !recognise_rational(y[i] / y[kappa], &other) ||
+    if (!recognise(x[i] / x[unit], &whole[i]) || !recognise(y[i] / y[unit], &other) ||
         !num_equal(whole[i], other))
       return;
   make_whole(whole, kappa + 1);
   for (uint32_t i = 0; i < w->n; i++) alpha[i] = whole[w->column[i]];
   *w->out = (Scaling){alpha, whole[beta], whole[kappa]};
-  w->found = is_proved(w);
+  w->found = w->keeps || is_proved(w);
 }
 
-int noether_scaling(const Eqns *e, Scaling *found, SearchLimit *limit) {
-  ScalingSearch w = {.e = e, .g = e->g, .n = e->n, .out = found, .limit = limit};
+static int find_scaling(const Eqns *e, int keeps, Scaling *found, SearchLimit *limit) {
+  ScalingSearch w = {.e = e, .g = e->g, .n = e->n, .out = found, .limit = limit, .keeps = keeps};
   if (!e->n || e->constraints.n || e->m->states.n || expr_kinds(e->g, e->lagrangian) & 1u << SYM_INPUT) return 0;
   for (uint32_t i = 0; i < e->n; i++)
     if (!expr_is_zero(e->g, e->Q[i])) return 0;
   arena_with_scratch(expr_arena(e->g), scaling_work, &w);
   return w.found;
 }
+
+int noether_scaling(const Eqns *e, Scaling *found, SearchLimit *limit) { return find_scaling(e, 0, found, limit); }
+
+int scaling_of_kinds(const Eqns *e, Scaling *found, SearchLimit *limit) { return find_scaling(e, 1, found, limit); }

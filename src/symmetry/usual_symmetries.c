@@ -103,6 +103,21 @@ static void try_cyclic(TrialWork *w) {
   }
 }
 
+/* A scaling that keeps the action, and the expansion beside it where coordinates scale by the root of time. */
+static void try_scaling(TrialWork *w) {
+  Scaling s;
+  if (!scaling_of_kinds(w->e, &s, w->limit)) return;
+  Expr *scale = zero_components(w), *expand = zero_components(w);
+  Expr two = expr_int(w->g, 2), ratio = expr_div(w->g, two, expr_num(w->g, s.beta));
+  for (uint32_t i = 0; i < w->n; i++) {
+    scale[i] = expr_scale(w->g, s.alpha[i], node(w, i));
+    expand[i] = expr_mul(w->g, expr_mul(w->g, ratio, w->t), scale[i]);
+  }
+  Expr tau = expr_scale(w->g, s.beta, w->t), square = expr_pow_num(w->g, w->t, num_int(2));
+  if (try_one(w, scale, tau, (FoundSymmetry){.kind = SYMMETRY_SCALING, .name = "scaling", .axis = AXIS_NONE}))
+    try_one(w, expand, square, (FoundSymmetry){.name = "expansion", .axis = AXIS_NONE});
+}
+
 /* --- dispatch --- */
 
 int too_large_to_search(const Eqns *e) { return eqns_coordinates(e) > SEARCH_MOST; }
@@ -114,11 +129,13 @@ void try_usual_symmetries(Eqns *e, FoundSymmetries *out, SearchLimit *limit) {
                  .limit = limit};
   search_stage(limit, 0.8, "the usual symmetries");
   out->ansatz = "for more than a hundred coordinates members of a family move alike: the energy, momenta of cyclic "
-                "coordinates, and translations, boosts and rotations of all coordinates of a kind together";
+                "coordinates, and translations, boosts, rotations, scalings and expansions of all coordinates of "
+                "a kind together";
   out->searched = 1;
   try_one(&w, zero_components(&w), expr_int(e->g, -1),
           (FoundSymmetry){.kind = SYMMETRY_ENERGY, .name = "energy", .axis = AXIS_NONE});
   try_cyclic(&w);
   try_kinds(&w);
   for (uint32_t axis = 0; axis < 3; axis++) try_turn(&w, axis);
+  try_scaling(&w);
 }

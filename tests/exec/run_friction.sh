@@ -50,6 +50,12 @@ for method in verlet variational symplectic_euler ${GSL:+gsl-rk8pd gsl-bsimp}; d
 done
 check "check names the surface" sh -c "$LAGC check $TMP/slide.lag | grep -qx \"switching surface: .x'. = 0 (line 5), where a motion may stick\""
 
+# ---- a saw crosses its surface where x/L is a whole number, and not 0: x = 1 + t passes 2, 4, ..., 10 within 10 s
+printf '%s\n' 'model saw' 'coord x' 'state z' 'param L = 2 > 0' "lagrangian = x'^2/2" "flow z' = mod(x, L)" \
+  "scene s { start x = 1, x' = 1; span 10 }" > "$TMP/saw.lag"
+check "check names whole numbers" sh -c "$LAGC check $TMP/saw.lag | grep -qx 'switching surface: .x/L. = a whole number (line 6)'"
+check "and so does a run" sh -c "$LAGC run $TMP/saw.lag | grep -qx 'surface x/L = a whole number: crossed 5 times'"
+
 # ---- its work is a line of its own: -m v^2/2 here; -4 R x0 a period of Den Hartog's oscillator, x0 = 0.48483893978808 (models/coulomb_oscillator.facts)
 run slide --method dop853
 check "friction does the work" near "$(number dry_friction)" -2 1e-13

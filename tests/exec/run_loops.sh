@@ -164,6 +164,25 @@ check "a band: zeros take none" short band 320
 solved_by() { "$LAGC" derive "$TMP/m/$1.lag" --format c | grep -q "$2" || { "$LAGC" derive "$TMP/m/$1.lag" --format c | grep lag_solve; return 1; }; }
 check "a full matrix by a loop" solved_by dense 'lag_solve(22, w, w + 484)'
 check "one that may be indefinite by a loop" solved_by band 'lag_solve(30, w, w + 900)'
+# Two coordinates a body, coupled around a ring by velocities of no declared sign: M, in the order of the text as wide as the ring, is a band in another one.
+# A mode x = y = cos(2 pi 5 i/60) cos(w t) has w^2 = 1/(2 + 2 c cos(2 pi 5/60) + d); other modes, of negative inertia, grow from rounding by no more than e^(1/sqrt(0.02)) = 1e3
+cat >"$TMP/m/around.lag" <<'END'
+model around
+const N = 60
+coord x[N], y[N]
+param m = 2, c = 1.5, d = 0.7
+kinetic = sum(i in 1..N, m/2*(x[i]'^2 + y[i]'^2) + d*x[i]'*y[i]') + sum(i in 1..N-1, c*(x[i]'*x[i+1]' + y[i]'*y[i+1]')) + c*(x[N]'*x[1]' + y[N]'*y[1]')
+potential = sum(i in 1..N, x[i]^2 + y[i]^2)/2
+scene s { start x[i in 1..N] = cos(pi*i/6), y[i in 1..N] = cos(pi*i/6); span 1; tolerance 1e-11 }
+END
+"$LAGC" run "$TMP/m/around.lag" --json >"$TMP/around.json" 2>&1
+final() { sed 's/.*"y\['"$1"'\]": \([^,}]*\).*/\1/' "$TMP/around.json"; }
+of_mode() { awk "BEGIN { printf \"%.17g\", $1*cos(1/sqrt(2.7 + 3*cos(4*atan2(1, 1)/6))) }"; }
+near "an indefinite ring: its mode" "$(final 60)" "$(of_mode 1)" 1e-9
+near "at another place" "$(final 2)" "$(of_mode 0.5)" 1e-9
+few() { n=$("$LAGC" emit "$TMP/m/around.lag" | sed -n 's/.*Accelerations: \([0-9]*\) operations.*/\1/p' | head -1); [ "$n" -lt 15000 ] || { echo "$n operations"; return 1; }; }
+check "in the operations of a band, 170 a body, not of a full matrix, 20,000" few
+is "a string of 10,000 is not written out" "" "$("$LAGC" emit models/string.lag -DN=10000 2>&1 >"$TMP/string.c")"
 in_one_loop() { "$LAGC" derive "$TMP/m/string_500.lag" --format c | grep -q '^    a\[k + [0-9]*\] = '; }
 check "a string's accelerations are stored where they are computed" in_one_loop
 small() { "$LAGC" emit models/string.lag hard -DN=10000 -o "$TMP/string.c" && [ "$(wc -c <"$TMP/string.c")" -lt 131072 ]; }

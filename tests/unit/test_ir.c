@@ -146,12 +146,20 @@ static void test_count_of_many(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
   Prog *p = prog_new(a);
-  vec_push(a, &p->solves, ((Solve){.n = 2000}));
+  enum { N = 2000 };
+  Slot *matrix = ARENA_ARRAY(a, Slot, (size_t)N * N); /* its corners: no band */
+  matrix[N - 1] = matrix[(size_t)N * (N - 1)] = 1;
+  vec_push(a, &p->solves, ((Solve){.n = N, .matrix = matrix}));
   prog_ins(p, (Ins){.op = IR_SOLVE, .index = 0});
   OpCount c = prog_count(p);
   assert_true(c.mul == 2668665000u && c.add == c.mul && c.div == 2001000u);
   assert_true(ops_total(c) == 5339331000u);
   assert_int_equal(ops_as_int(ops_total(c)), INT32_MAX);
+  /* three coupled in a row: exchanges widen the band by one above; 2 + 1 and 1 + 1 products below the pivots, 2 + 1
+   * behind; a quotient a pivot and an unknown */
+  const Slot chain[] = {1, 1, 0, 1, 1, 1, 0, 1, 1};
+  c = solve_count(a, &(Solve){.n = 3, .matrix = chain});
+  assert_true(c.mul == 8 && c.add == 8 && c.div == 5);
   arena_free(a);
 }
 

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "compile_text.h"
-#include "symmetry/noether_theorem.h"
+#include "symmetry/find_symmetries_impl.h"
 #include "sym/print.h"
 #include "sym/prove.h"
 
@@ -262,8 +262,34 @@ static void any_gauge(void **state) {
   proves(GAUGED BOUND "observe xi_x = -y\nobserve xi_y = x\n", NOT_INVARIANT);
 }
 
+/* Of a free particle in a plane: combinations of shifts and turns that are known are left out, others stay. */
+static void joined_symmetries(void **state) {
+  (void)state;
+  Proof p = prove_model("model m\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2\nobserve xi_x = 1\n");
+  ExprGraph *g = p.e->g;
+  Expr zero = expr_int(g, 0), one = expr_int(g, 1), t = expr_symbol(g, p.e->m->time)->node;
+  Expr x = expr_symbol(g, p.e->m->coords.at[0].q)->node, y = expr_symbol(g, p.e->m->coords.at[1].q)->node;
+  const Expr shift_x[] = {one, zero}, shift_y[] = {zero, one}, both[] = {expr_int(g, 3), expr_int(g, -2)};
+  const Expr turn[] = {expr_neg(g, y), x}, about[] = {expr_sub(g, one, y), x}, scale[] = {x, y}, still[] = {zero, zero};
+  const Generator usual[] = {{still, expr_int(g, -1)}, {shift_x, zero}, {shift_y, zero}, {turn, zero}},
+                  found[] = {{both, zero}, {scale, expr_add(g, t, t)}, {about, zero}, {shift_x, t}};
+  FoundSymmetries first = {0}, second = {0};
+  for (int k = 0; k < 4; k++) {
+    vec_push(p.arena, &first.all, ((FoundSymmetry){.by = usual[k]}));
+    vec_push(p.arena, &second.all, ((FoundSymmetry){.by = found[k]}));
+  }
+  FoundSymmetries all = join_symmetries(p.e, &first, &second), other = join_symmetries(p.e, &second, &first);
+  assert_int_equal(all.all.n, 6);
+  assert_ptr_equal(all.all.at[4].by.xi, scale);
+  assert_ptr_equal(all.all.at[5].by.xi, shift_x);
+  assert_int_equal(other.all.n, 6);
+  assert_ptr_equal(other.all.at[2].by.xi, about);
+  arena_free(p.arena);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(kepler),      cmocka_unit_test(boosts),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(joined_symmetries),
+                                     cmocka_unit_test(kepler),      cmocka_unit_test(boosts),
                                      cmocka_unit_test(oscillator),  cmocka_unit_test(gauges),
                                      cmocka_unit_test(integrals),   cmocka_unit_test(scaling),
                                      cmocka_unit_test(balances),    cmocka_unit_test(constrained),

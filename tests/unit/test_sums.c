@@ -73,6 +73,14 @@ static const char *const texts[] = {
     "const N = %d\ncoord x[N], y[N]\nparam k[N] = 1\nlagrangian = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2) -\n"
     "  sum(i in 1..N, k[i]/2*(x[if(i < N, i+1, 1)] - x[i])^2 + if(i > 1, (y[i] - y[i-1])^4/4, y[1]^2)) -\n"
     "  sum(i in 1..N, if(not i == 2 and 2*i <= N + 3, i*cos(x[i]*y[N+1-i]), y[if(i == N, 2, if(i >= N-1, 1, i+2))]))",
+    /* conditions in lets by index, of other lets; on the outer index of pairs, and beside the inner sum */
+    "const N = %d\ncoord x[N], y[N]\nparam k[N] = 1\nlet d[i in 1..N] = x[i] - if(i > 1, x[i-1], 0)\n"
+    "let e[i in 0..N] = if(i < N, y[i+1], 0) - if(i > 0, y[i], 0), \n"
+    "  f[i in 1..N] = d[i]*if(i == 2, e[i], cos(e[i-1]))\n"
+    "lagrangian = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2 - d[i]^2 - f[i]) -\n"
+    "  sum(i in 0..N, e[i]^2 + e[if(i > 1, 0, N)]) -\n"
+    "  sum(i in 1..N, sum(j in 1..i-1, if(i < N, k[i], 2*k[j])*cos(x[i] - x[j]) + d[i]*y[j])) -\n"
+    "  sum(i in 1..N, if(i > 2, y[i-2], 3)*sum(j in 2..N, if(i != 3, x[i]^2, y[j])/i) + if(i > N-2, y[i]^3, x[i]))",
     /* a range that moves and grows; the first two rows are empty */
     "const N = %d\ncoord x[2*N]\nlagrangian = sum(i in 1..2*N, x[i]'^2/2) -\n"
     "  sum(i in 1..N, sum(j in i+1..2*i-2, cos(x[i] - 2*x[j])))",
@@ -173,12 +181,12 @@ static const char *one_of(const char *const *from, size_t n) { return from[(size
 static const char *random_factor(Arena *a, int pairs) {
   static const char *const at[] = {"i", "i+1", "2*i", "N+2-i", "i+2", "3", "if(i < N-1, i+1, 1)",
                                  "if(i == 3 or i < 2, 2, 2*i-1)"},
-                    *const of_pairs[] = {"i", "j", "j+1", "2*i", "i+j", "N+2-j", "3"},
+                    *const of_pairs[] = {"i", "j", "j+1", "2*i", "i+j", "N+2-j", "3", "if(i < 3, i+2, N)"},
                     *const shapes[] = {"x[%s]*y[%s]", "cos(x[%s] - x[%s])", "(x[%s] - y[%s])^2", "exp(-x[%s]^2)*k[%s]",
                                        "abs(x[%s] - y[%s])", "max(x[%s], y[%s]/2)^2", "if(x[%s] < y[%s], x[1], y[2]^2)",
                                        "c[%s]*x[%s]", "1/(2 + (x[%s] + c[%s])^2)"};
-  const char *first = pairs ? one_of(of_pairs, 7) : one_of(at, 8);
-  const char *second = pairs ? one_of(of_pairs, 7) : one_of(at, 8);
+  const char *first = pairs ? one_of(of_pairs, 8) : one_of(at, 8);
+  const char *second = pairs ? one_of(of_pairs, 8) : one_of(at, 8);
   return arena_printf(a, one_of(shapes, 9), first, second);
 }
 
@@ -203,7 +211,8 @@ static void random_families_agree(void **state) {
     const char *pairs = random_sum(a, 1), *single = random_sum(a, 0), *beside = random_sum(a, round % 2);
     const char *text = arena_printf(
         a,
-        "const N = %%d, M = 2*N + 2\ncoord x[M], y[M]\nparam k[M] = 1 > 0, w = 1/3\nlet c[i in 1..M] = w*sin(y[i])\n"
+        "const N = %%d, M = 2*N + 2\ncoord x[M], y[M]\nparam k[M] = 1 > 0, w = 1/3\n"
+        "let c[i in 1..M] = w*sin(y[i]) + if(i > 3, x[i-3], w*y[1])\n"
         "kinetic = sum(i in 1..M, k[i]*(x[i]'^2 + y[i]'^2)/2) + sum(i in 1..N, w/9*x[i]'*x[i+1]')\n"
         "potential = %s + %s + %s\n"
         "dissipation = sum(i in 1..N, sum(j in 1..N, w/2*(x[i]' - y[j]')^2*(1 + c[i]^2)))",
@@ -245,10 +254,13 @@ static void conditions_divide_the_range(void **state) {
   const char *messages;
   Eqns *e = try_family(a, "const N = %d\ncoord x[N]\nlagrangian = sum(i in 1..N, x[i]'^2/2) -\n"
                           "  sum(i in 1..N, (x[if(i < N, i+1, 1)] - x[i])^2) -\n"
-                          "  sum(i in 1..N, if(not i == 9 and i > 2, i*cos(x[i-2]), x[N+1-i]))", 100, 8, &messages);
+                          "  sum(i in 1..N, if(not i == 9 and i > 2, i*cos(x[i-2]), x[N+1-i])) -\n"
+                          "  sum(i in 0..N, d[i]^2) - sum(i in 1..N, sum(j in 1..N, if(i < 4, x[i], 2*x[j])*x[i]))\n"
+                          "let d[i in 0..N] = if(i < N, x[i+1], 0) - if(i > 0, x[i], 0)", 100, 8, &messages);
   assert_non_null(e);
   assert_string_equal(messages, "");
-  assert_int_equal(e->m->sums.n, 3); /* 1..100; 1..99; 10..100: all other parts have fewer than 8 terms */
+  /* 1..100; 1..99; 10..100; 1..99; 1..3 and 4..100 by pairs: all other parts have fewer than 8 terms */
+  assert_int_equal(e->m->sums.n, 6);
   arena_free(a);
 }
 
