@@ -113,7 +113,7 @@ Model *compiler_model(Compiler *c, const ModelChoice *choice) {
   with_defines.defines = c->o.defines.at;
   with_defines.ndefines = c->o.defines.n;
   if (!choice->bare && !choice->unfixed) with_defines.fix = c->o.fix;
-  if (c->small && !choice->sums_from) with_defines.sums_from = SMALL_SUMS_FROM;
+  if (c->small) with_defines.times = c->small->times;
   return model_build(c->ast, &with_defines);
 }
 
@@ -151,9 +151,7 @@ Eqns *compiler_derive_wanted(Compiler *c, const ModelChoice *choice) {
 }
 
 ProgramSet *compiler_unit_head(Compiler *c, Eqns *e) {
-  ProgramSet *u = unit_head(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0);
-  u->times = c->small ? c->small->times : 1;
-  return u;
+  return unit_head(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0);
 }
 
 ProgramSet *compiler_new_unit(Compiler *c, Eqns *e) {

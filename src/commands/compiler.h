@@ -21,7 +21,6 @@ typedef struct {
   StrBuf written;
   double times;
 } SmallSize;
-enum { SMALL_SUMS_FROM = 64 }; /* its sums of so many terms stay sums, as all are in the size asked for */
 
 typedef struct {
   Arena *arena;

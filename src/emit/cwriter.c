@@ -532,7 +532,8 @@ static void write_code(Writer *w) {
 void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   Writer w = {.p = p, .style = style, .a = a, .names = cnames_new(a), .out = out};
   /* programs with nests are long */
-  uint32_t from = p->nests.n ? 0 : style->prefer_short_code ? ROLL_SELDOM_FROM : ROLL_FROM;
+  const double times = style->times > 0 ? style->times : 1;
+  uint32_t from = p->nests.n ? 0 : (uint32_t)((style->prefer_short_code ? ROLL_SELDOM_FROM : ROLL_FROM)/times);
   w.rolls = roll_find(p, arrays_by_index(style), from, stores_apart(p, style));
   w.stored = ARENA_ARRAY(a, const char *, p->ins.n), w.in_call = ARENA_ARRAY(a, unsigned char, p->ins.n);
   cwriter_init_pieces(&w);

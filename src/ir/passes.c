@@ -22,16 +22,17 @@ static int take(Prog **to, Prog *p, const char *name, StrBuf *trace) {
 
 Prog *passes_run(Prog *p, const PassPlan *plan, StrBuf *trace) {
   /* is_short: too short for loops, so that products may be taken apart */
+  const double times = plan->times > 0 ? plan->times : 1;
   int sound = take(&p, p, "lowering", trace), is_short = 0;
   if (sound) sound = take(&p, prog_tidy(p), "tidy", trace);
   if (sound && plan->every_step) sound = take(&p, prog_factor(p), "factor", trace);
-  is_short = plan->every_step && p->ins.n <= ROLL_FROM && !p->nests.n;
+  is_short = plan->every_step && p->ins.n*times <= ROLL_FROM && !p->nests.n;
   if (sound && is_short) sound = take(&p, prog_product_cse(p), "product_cse", trace);
   if (sound && is_short) sound = take(&p, prog_reassociate_fma(p), "reassociate_fma", trace);
   if (sound && is_short && p->ins.n > PAGE)
     sound = take(&p, prog_schedule_by_path(p, plan->libm), "schedule_by_path", trace);
   if (sound && !is_short && plan->nests_from)
-    sound = take(&p, prog_find_nests(p, plan->nests_from), "find_nests", trace);
+    sound = take(&p, prog_find_nests(p, (uint32_t)(plan->nests_from/times)), "find_nests", trace);
   if (sound && !is_short && plan->every_step && plan->uncoupled)
     take(&p, prog_schedule_by_store(p), "schedule_by_store", trace);
   return p;

@@ -10,6 +10,7 @@ typedef struct {
   int every_step;
   /* with every_step: each store needs values of its own, and a long program is scheduled store by store */
   int uncoupled;
+  double times;        /* as in ProgramSet; 0: 1 */
   int libm;            /* with every_step: sin and cos are calls, and are scheduled first */
 } PassPlan;
 

@@ -222,7 +222,7 @@ ProgramSet *unit_head(const Eqns *e, const char *source, int libm) {
   ProgramSet *u = ARENA_NEW(m->arena, ProgramSet);
   *u = (ProgramSet){.arena = m->arena,
                     .name = m->name, .doc = m->doc ? m->doc : "", .source = source, .flags = flags_of(e),
-                    .times = 1, .libm = libm};
+                    .times = m->times, .libm = libm};
   u->effects = joined(m->arena, m->effects.at, m->effects.n);
   u->all_effects = joined(m->arena, m->all_effects.at, m->all_effects.n);
   add_fixed(u, m);

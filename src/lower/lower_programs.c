@@ -20,7 +20,9 @@ Lower lower_by_text(const Eqns *e) {
 }
 
 Prog *lower_finish(const Lower *l, const PassPlan *plan, StrBuf *trace) {
-  Prog *p = passes_run(l->p, plan, trace);
+  PassPlan known = *plan;
+  known.times = l->e->m->times;
+  Prog *p = passes_run(l->p, &known, trace);
   arena_release(l->slots.arena, l->slots.at, l->slots.cap * sizeof *l->slots.at);
   return p;
 }

@@ -399,9 +399,10 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   b->scope.arena = b->members.arena = b->outputs.arena = b->constraints.arena = a;
   b->defines = choice->defines;
   b->ndefines = choice->ndefines;
-  b->sums_from = choice->sums_from ? choice->sums_from : SUMS_FROM;
   b->domains = choice->bare || choice->domains; /* claims are judged on models without a scene */
   Model *m = b->m = ARENA_NEW(a, Model);
+  m->times = choice->times > 0 ? choice->times : 1;
+  b->sums_from = choice->sums_from ? choice->sums_from : (uint32_t)(SUMS_FROM / m->times);
   m->ast = ast;
   m->diags = ast->diags;
   m->arena = a;

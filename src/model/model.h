@@ -403,6 +403,7 @@ typedef struct {
   Scene scene;
   VEC(FoundUnit) found;    /* inferred units of names declared without one */
   VEC(QuantifiedSum) sums;
+  double times; /* as in ModelChoice; 1 where that is 0 */
   ExprMap written; /* nodes that may jump (comparisons, sign, tan, atan2) -> AstId where the text writes them */
   Measures asked_measures; /* of the command line */
   int measured_outputs;    /* 1: they added outputs to the scene's */
@@ -501,6 +502,7 @@ typedef struct {
   /* the point transformation (Canonical.is_point) in whose new coordinates the model is built; or NULL */
   Name coordinates;
   int domains;     /* Model.domain is wanted; without a scene it always is */
+  double times; /* size of families asked for, as a multiple of the model's; 0: 1. What is long is judged there */
   uint32_t sums_from; /* sums over at least so many pairs are not written out; 0: the usual number */
   int unfixed;     /* set by callers that ignore the command line's --fix */
 } ModelChoice;
