@@ -183,7 +183,7 @@ coverage:
 	@printf '#!/bin/sh\nexec %s "$$@" -O0 --coverage\n' '$(CC)' >$(COVERAGE)/counted-cc && chmod +x $(COVERAGE)/counted-cc
 	-$(COVERAGE_MAKE) MODEL_CC='$(CURDIR)/$(COVERAGE)/counted-cc' COVERAGE=yes GCOV_ERROR_FILE=/dev/null run-coverage
 	@sh tests/coverage/lib_report.sh $(COVERAGE)
-build-coverage: all $(TEST_BIN)
+build-coverage: all $(TEST_BIN) $(if $(WASM),page)
 run-coverage:
 	$(RUN_TESTS) $(T)
 

@@ -32,7 +32,7 @@ Prog *passes_run(Prog *p, const PassPlan *plan, StrBuf *trace) {
   if (sound && is_short && p->ins.n > PAGE)
     sound = take(&p, prog_schedule_by_path(p, plan->libm), "schedule_by_path", trace);
   if (sound && !is_short && plan->nests_from)
-    sound = take(&p, prog_find_nests(p, (uint32_t)(plan->nests_from/times)), "find_nests", trace);
+    sound = take(&p, prog_find_nests(p, 1 + (uint32_t)((plan->nests_from - 1)/times)), "find_nests", trace);
   if (sound && !is_short && plan->every_step && plan->uncoupled)
     take(&p, prog_schedule_by_store(p), "schedule_by_store", trace);
   return p;
