@@ -198,15 +198,15 @@ static void put_sum(StrBuf *out, const Family *f) {
             f->letter, f->begin, f->end, body + 2);
 }
 
-/* "b - a" is printed for "-a + b": a first term goes before the family that it belongs to. */
+/* "b - a" is printed for "-a + b", and the last term of a family may come first: a first term goes before or behind the
+ * family that it belongs to. */
 static void put_first_term_back(Arena *a, Texts *terms, PrintStyle style) {
   if (terms->n < FEWEST) return;
-  Row first = row_of(a, terms->at[0], style), here = row_of(a, terms->at[1], style);
+  const char *text = terms->at[0];
+  Row first = row_of(a, text, style), here = row_of(a, terms->at[1], style), before;
   long *step = ARENA_ARRAY(a, long, 2 * (size_t)first.n + 1), *next = step + first.n;
-  if (follows(&first, &here, step)) return;
   for (uint32_t k = 2; k < terms->n; k++) {
-    const char *text = terms->at[0];
-    Row before = here;
+    before = here;
     here = row_of(a, terms->at[k], style);
     if (before.n != first.n || !follows(&before, &here, next) || !follows(&first, &before, step) ||
         memcmp(step, next, first.n * sizeof *step) != 0)
@@ -215,6 +215,11 @@ static void put_first_term_back(Arena *a, Texts *terms, PrintStyle style) {
     terms->at[k - 2] = text;
     return;
   }
+  if (before.n != first.n || !follows(&before, &here, next) || !follows(&here, &first, step) ||
+      memcmp(step, next, first.n * sizeof *step) != 0)
+    return;
+  memmove(terms->at, terms->at + 1, (terms->n - 1) * sizeof text);
+  terms->at[terms->n - 1] = text;
 }
 
 /* Whether the text is sum(...) and nothing else, which needs no brackets. */
