@@ -67,7 +67,8 @@ static int read_size(Builder *b, const AstStmt *st, AstId id, Name effect, int64
 
 /* Reads the sizes of a family into e, as index ranges 1..N. */
 static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
-  uint64_t all = e->parts ? e->parts : 1;
+  const int64_t most = FAMILY_MAX / (e->parts ? e->parts : 1);
+  int64_t all = 1;
   for (AstId i = st->dims; i; i = ast_expr(b->ast, i)->next) {
     Span span = ast_expr(b->ast, i)->span;
     int64_t n;
@@ -78,8 +79,9 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
     if (!read_size(b, st, i, effect, &n)) return 0;
     if (n < 0) return diag_error(b->diags, span, "the size of a family is negative: %lld" HELP
                                   "a family of size 0 has no members", (long long)n);
-    if (n > FAMILY_MAX || (all *= (uint64_t)n) > FAMILY_MAX)
-      return diag_error(b->diags, span, "a family has at most %d members", FAMILY_MAX);
+    if (n > most || (all *= n) > most)
+      return diag_error(b->diags, span, "a family%s has at most %lld members",
+                        e->parts == 4 ? " of rotations" : e->parts ? " of vectors" : "", (long long)most);
     e->lo[e->ndims] = 1;
     e->hi[e->ndims++] = n;
   }
