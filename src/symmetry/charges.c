@@ -242,7 +242,7 @@ static void put_balance(const Eqns *e, const Charge *c, StrBuf *out) {
 static int motion_jumps(const Model *m) {
   for (uint32_t i = 0; i < m->events.n; i++)
     if (m->events.at[i].actions.n) return 1;
-  return m->contacts.n > 0;
+  return m->contacts.n || m->families.n;
 }
 
 /* Reason of a conserved energy beside which forces, or constraints that move, act. */

@@ -113,6 +113,7 @@ static const char *missing_operator(const Parse *cx) {
   const Token *t = &cx->current, *b = &cx->before;
   if ((t->name && has_word("if then else when where", t->name)) || (b->name && has_word("if then else", b->name)))
     return "a choice is written `if(x > 0, a, b)`: a where the condition holds, b where not";
+  if (t->name && strcmp(t->name, "mod") == 0) return "a remainder is `mod(a, b)`";
   if (t->kind == TOK_IDENT && b->kind == TOK_NUMBER)
     return arena_printf(cx->ast->arena, "a unit stands in brackets: `[%s]`; a product is written with `*`", t->name);
   if (b->kind == TOK_IDENT && is_function(b->name))
