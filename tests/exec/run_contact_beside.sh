@@ -135,6 +135,8 @@ tells() { # tells WORDS COMMAND: its output for the model has these words
 check "the work is that of drag, (exp(-4) - 1)/2" tells '^energy balance: .*work of forces and explicit time: -0.490842;' run
 check "the rest is that of impacts, 30 to the depth at the end" tells '^impacts and events: -30.00[0-9]* of energy' run
 check "L has no jumps" tells "energy changes: dE/dt = -z'^2" check
+check "derive says when its equations hold" tells 'equations of motion while contacts of families are open' derive
+check "no step is small enough for impacts" says 'near them; compare runs with half the step' run work --accuracy 1e-6
 check "noether names impacts" tells 'impacts and contacts change charges' noether
 
 # ---- a pile with a double pendulum, rods and walls: its families against single contacts
