@@ -242,7 +242,7 @@ static void put_balance(const Eqns *e, const Charge *c, StrBuf *out) {
 static int motion_jumps(const Model *m) {
   for (uint32_t i = 0; i < m->events.n; i++)
     if (m->events.at[i].actions.n) return 1;
-  return m->contacts.n || m->families.n;
+  return m->contacts.n > 0;
 }
 
 /* Reason of a conserved energy beside which forces, or constraints that move, act. */
@@ -296,7 +296,10 @@ const char *charges_energy_text(const Eqns *e) {
   enum { LINE = 100 };
   const Noether *is = &e->charges[0].proof;
   if (is->jumps) return "energy changes (L jumps, and the energy with it)";
-  const char *events = motion_jumps(e->m) ? " between events" : "", *name = e->m->hamiltonian ? "H" : "E";
+  const char *events = e->m->families.n     ? " while contacts of families are open"
+                       : motion_jumps(e->m) ? " between events"
+                                            : "";
+  const char *name = e->m->hamiltonian ? "H" : "E";
   const char *inputs = is->by_formulas ? " while inputs follow their formulas" : "";
   if (is->drift == PROVED_ZERO)
     return arena_printf(e->m->arena, "energy is conserved%s%s%s", events, inputs, reason_of(e));
