@@ -78,8 +78,9 @@ int lag_app_choose_by_accuracy(App *app) {
   if (app->sim->pb.contacts && lag_equal_step(app->sim) > 0)
     return lag_app_error(a,
                          "--accuracy: %s meets impacts at its steps, so no step gives a small error of velocities near "
-                         "them; dop853 locates impacts",
-                         app->sim->method->name);
+                         "them; %s",
+                         app->sim->method->name,
+                         app->scene->model->families ? "compare runs with half the step" : "dop853 locates impacts");
   int equal = lag_equal_step(app->sim) > 0;
   double least = equal ? 0 : 4.5 * DBL_EPSILON,
          knob = equal ? lag_equal_step(app->sim) : fmax(least, fmin(0.1 * asked, 1e-3)),

@@ -374,13 +374,17 @@ void lag_charges_add_work(lag_sim *s, double at_events, double rubbed) {
   s->run->at_events += at_events;
 }
 
-/* Work of contacts by impulses in the present step up to now that is not in the charges yet. */
-static double pending_work(const lag_sim *s) {
+/* Adds work of contacts by impulses in the present step up to now that is not in the charges yet. */
+static void add_pending_work(const lag_sim *s, Charge *energy, lag_charge_stats *st) {
   const lag_contact_stats *c = s->pb.contacts;
   const Run *r = s->run;
-  if (!c || c->due == 0.0 || r->have_step == 0.0) return 0;
+  if (!c || c->due == 0.0 || r->have_step == 0.0) return;
   double part = c->from < r->step_t1 ? r->t >= c->from : (r->t - r->step_t0) / (r->step_t1 - r->step_t0);
-  return part * (c->work + c->rubbed);
+  const int known = isfinite(st->dry_friction);
+  const double rubbed = part * c->rubbed, struck = part * c->work + (known ? 0 : rubbed);
+  if (known) st->dry_friction += rubbed, st->work += rubbed;
+  st->at_events += struck;
+  energy->first += struck;
 }
 
 /* Includes the present state in the peak. */
@@ -430,11 +434,11 @@ void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st) {
   }
   lag_charges_at(s, r->t, s->now);
   st->now = s->charge_now[2 * k];
-  c->first += k == 0 ? pending_work(s) : 0;
   st->work = c->work + since;
   st->dry_friction =
       k == 0 && m->charges && m->charges->dry_friction && r->balanced != 0.0 ? r->dry_work + st->dry_friction : NAN;
   st->at_events = k == 0 ? r->at_events : 0;
+  if (k == 0) add_pending_work(s, c, st);
   if (r->begun == 0.0) st->begin = st->now;
   else with_present(c, st->now, st->work);
   if (r->begun != 0.0 && !(size > 0)) size = s->charge_now[2 * k + 1];

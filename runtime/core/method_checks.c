@@ -1,6 +1,7 @@
 /* Whether a method can integrate a model, and values of its options. Enters: a simulation, a method, options by name;
  * leaves: values, or a message with a method that can. */
 #include <float.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "core/core.h"
@@ -27,12 +28,26 @@ static int option_value(lag_sim *s, const lag_method *m, const lag_method_option
   return LAG_OK;
 }
 
+static int is_tolerance(const char *name) {
+  return strcmp(name, "tol") == 0 || strcmp(name, "rtol") == 0 || strcmp(name, "tolerance") == 0;
+}
+
+static int no_such_option(lag_sim *s, const lag_method *m, const char *name) {
+  char has[256] = "";
+  for (int i = 0; i < m->noptions; i++) {
+    size_t at = strlen(has);
+    snprintf(has + at, sizeof has - at, "%s%s", i ? ", " : "it has ", m->options[i].name);
+  }
+  const char *says = !is_tolerance(name) ? has : "the tolerance stands apart, --tol or lag_sim_set_tolerance";
+  return lag_fail(s, LAG_EINVAL, "method %s has no option \"%s\"%s%s", m->name, name, says[0] ? ": " : "", says);
+}
+
 int lag_method_read_options(lag_sim *s, const lag_method *m, const lag_option *opt, int nopt, double *values) {
   for (int k = 0; k < nopt; k++) {
     int i = 0;
     while (i < m->noptions && opt[k].name && strcmp(m->options[i].name, opt[k].name) != 0) i++;
     if (i == m->noptions || !opt[k].name)
-      return lag_fail(s, LAG_EINVAL, "method %s has no option \"%s\"", m->name, opt[k].name ? opt[k].name : "");
+      return no_such_option(s, m, opt[k].name ? opt[k].name : "");
     int rc = option_value(s, m, &m->options[i], &opt[k], &values[i]);
     if (rc) return rc;
   }

@@ -30,7 +30,7 @@ static inline void lag_coupled_place(lag_coupled_friction *w, LAG_REAL *room) {
   w->loaded = 0;
   w->was = room, w->change = room += n, w->stride = room += n, w->held = room += n, w->base = room + n;
   w->other = w->base + w->joints->states;
-  for (int j = 0; j < n; j++) w->change[j] = w->stride[j] = LAG_C(0.0);
+  for (int j = 0; j < n; j++) w->change[j] = w->stride[j] = w->held[j] = LAG_C(0.0);
 }
 
 /* A round of lag_joints_solve. *moved: the largest change of a slip, in units of the largest slip. */
@@ -48,17 +48,25 @@ static inline int lag_coupled_round(LAG_MODEL, lag_coupled_friction *w, const la
   return status;
 }
 
+/* Static friction of surface j, which would slip, may hold and let go by turns as contacts follow: in later rounds it
+ * has broken loose. */
+static inline void lag_coupled_let_go(lag_joint_friction *f, int j, int round) {
+  if (round >= 50) f->bound[j] = f->grip[j] = LAG_C(1.0);
+}
+
 /* Mode to go on from on surface j: by longer strides where it changes in the same direction round by round, as where
  * contacts leave a slip that is small beside what friction changes: then friction comes to its limit by small equal
  * steps. */
-static inline LAG_REAL lag_coupled_stride(lag_coupled_friction *w, int j) {
+static inline LAG_REAL lag_coupled_stride(lag_coupled_friction *w, int j, int round) {
   const LAG_REAL one = LAG_C(1.0), mode = w->joints->mode[j], change = mode - w->was[j], last = w->change[j];
   const int goes_on = change*last > LAG_C(0.0) && LAG_FN(fabs)(change) >= LAG_FN(fabs)(last)/LAG_C(2.0);
   const LAG_REAL stride = goes_on ? lag_smaller(LAG_C(2.0)*w->stride[j] + one, LAG_C(1e6)) : LAG_C(0.0);
   const LAG_REAL to = mode + stride*change;
   w->change[j] = change;
   w->stride[j] = stride;
-  return goes_on && LAG_FN(fabs)(to) > w->joints->bound[j] ? LAG_SELECT(to < LAG_C(0.0), -one, one) : to;
+  if (!goes_on || LAG_FN(fabs)(to) <= w->joints->bound[j]) return to;
+  lag_coupled_let_go(w->joints, j, round);
+  return LAG_SELECT(to < LAG_C(0.0), -one, one);
 }
 
 /* x[states] += part times what the last calls of round and lengthen changed. */
@@ -87,13 +95,15 @@ static inline void lag_coupled_straighten(lag_coupled_friction *w) {
 }
 
 /* Where a surface has begun to slip or to stick, by which responses change, this turn goes on without them. */
-static inline void lag_coupled_turns(lag_coupled_friction *w) {
+static inline void lag_coupled_turns(lag_coupled_friction *w, int round) {
+  lag_joint_friction *const f = w->joints;
   int turns = 0;
-  for (int j = 0; j < w->joints->n && w->loaded; j++) {
-    turns += w->held[j] < w->joints->sticks[j] || w->held[j] > w->joints->sticks[j];
-    w->held[j] = w->joints->sticks[j];
+  for (int j = 0; j < f->n; j++) {
+    turns += w->held[j] < f->sticks[j] || w->held[j] > f->sticks[j];
+    lag_coupled_let_go(f, j, w->held[j] > f->sticks[j] ? round : 0);
+    w->held[j] = f->sticks[j];
   }
-  if (turns) lag_coupled_straighten(w);
+  if (turns && w->loaded) lag_coupled_straighten(w);
 }
 
 /* s->y1 := w->end with both. */
@@ -107,9 +117,9 @@ static inline int lag_coupled_agree(LAG_MODEL, lag_coupled_friction *w, const la
     LAG_TRY(LAG_MEET(s, w));
     LAG_TRY(lag_coupled_round(LAG_THE_MODEL, w, s, w->contacts.impacts > 0, moved));
     if (moved[0] <= LAG_C(64.0)*s->epsilon) return status;
-    lag_coupled_turns(w);
+    lag_coupled_turns(w, round);
     if (round > 0 && moved[0] <= LAG_C(1e7)*s->epsilon && moved[0] >= before/LAG_C(2.0)) return status;
-    for (int j = 0; j < w->joints->n; j++) LAG_HOLD(w->joints, j, lag_coupled_stride(w, j));
+    for (int j = 0; j < w->joints->n; j++) LAG_HOLD(w->joints, j, lag_coupled_stride(w, j, round));
     lag_coupled_carry(w, s->h, w->end);
     lag_coupled_carry(w, LAG_C(1.0), s->rate0);
     before = moved[0];

@@ -18,7 +18,8 @@ Prog *lower_accel(const Eqns *e, int libm);
 IrSystem lower_system(const Eqns *e);
 Prog *lower_energy(const Eqns *e);  /* out 0: e[2], the energy and its scale */
 Prog *lower_charges(const Eqns *e); /* out 0: value and scale of each charge but the energy */
-/* out 0: time derivative of each charge, the energy first; NULL: all are conserved */
+int lower_rubs(const Eqns *e); /* friction takes energy, of contacts, too */
+/* out 0: time derivative of each charge, the energy first, and the power of friction; NULL: there is none, all 0 */
 Prog *lower_charge_rates(const Eqns *e);
 Prog *lower_variation(const Eqns *e, const Variation *x); /* out 0, 1, 2: dL/dq[nq], dL/dq'[nq], Q[nq] */
 Prog *lower_second_derivatives(const Eqns *e, const Variation *x);    /* out 0: h[number of entries] */

@@ -19,16 +19,20 @@ static Expr power_of(const Eqns *e, uint32_t i) {
   return n->power_unknown ? expr_int(e->g, 0) : n->power;
 }
 
+int lower_rubs(const Eqns *e) {
+  vec_each(const ContactFamily, f, e->m->families) if (f->tangents) return 1; /* moreau knows its work */
+  return !expr_is_zero(e->g, switch_power(e));
+}
+
 Prog *lower_charge_rates(const Eqns *e) {
   Lower l = lower_new(e);
-  int some = 0;
+  int rubs = lower_rubs(e), some = rubs;
   for (uint32_t i = 0; i < e->ncharges; i++) {
     Expr power = power_of(e, i);
     some |= !expr_is_zero(e->g, power);
     lower_output(&l, power, arena_printf(l.p->arena, "d(%s)/dt", e->charges[i].name));
   }
   if (!some) return NULL;
-  Expr dry = switch_power(e);
-  if (!expr_is_zero(e->g, dry)) lower_output(&l, dry, "power of dry friction");
+  if (rubs) lower_output(&l, switch_power(e), "power of dry friction");
   return lower_outputs_seldom(&l);
 }

@@ -149,7 +149,7 @@ static void add_charges(ProgramSet *u, const Eqns *e) {
   }
   u->charge_values = e->ncharges > 1 ? lower_charges(e) : NULL;
   u->charge_powers = powers;
-  u->dry_friction = powers && !expr_is_zero(e->g, switch_power(e));
+  u->dry_friction = powers && lower_rubs(e);
 }
 
 static void add_switches(ProgramSet *u, const Eqns *e) {

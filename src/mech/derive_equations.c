@@ -225,7 +225,7 @@ static void classify(Eqns *e) {
         op != EX_SELECT && op != EX_ABS && op != EX_SIGN && op != EX_FLOOR && op != EX_MIN && op != EX_MAX && !cut;
   }
   unsigned lagrangian = kinds_of_lagrangian(e);
-  e->energy_jumps = e->energy && (m->families.n || discontinuities_of(e, e->energy).n > 0);
+  e->energy_jumps = e->energy && discontinuities_of(e, e->energy).n > 0;
   e->loses_energy = raised_by_forces_alone(e, lagrangian);
 }
 

@@ -32,7 +32,9 @@ static void unknown_option(Builder *b, const MethodInfo *m, const AstExpr *name)
   Name near = suggest(name->name, names.at, names.n);
   vec_push(b->arena, &names, NULL);
   diag_error(b->diags, name->span, "the method `%s` has no option `%s`", m->name, name->name);
-  if (near) diag_help(b->diags, "did you mean `%s`? `lagc methods` lists the options", near);
+  if (strcmp(name->name, "tol") == 0 || strcmp(name->name, "rtol") == 0 || strcmp(name->name, "tolerance") == 0)
+    diag_help(b->diags, "the tolerance is a statement of its own: `tolerance 1e-8`");
+  else if (near) diag_help(b->diags, "did you mean `%s`? `lagc methods` lists the options", near);
   else if (names.at[0]) diag_help(b->diags, "its options: %s; `lagc methods` explains them", listed(b, names.at));
   else diag_help(b->diags, "it has no options");
 }

@@ -174,7 +174,7 @@ static int refused(struct Quantified *q, AstId where, const char *why) {
 static const AstStmt *only_definition(const Builder *b, const Entity *e) {
   const AstStmt *st = NULL;
   vec_each(const Definition, d, b->lets) {
-    if (d->stmt->name != b->lets.at[e->index].stmt->name || d->effect != b->lets.at[e->index].effect) continue;
+    if (d->stmt->name != e->name || d->effect != e->effect) continue;
     if ((st && d->stmt != st) || d->naround) return NULL;
     st = d->stmt;
   }

@@ -124,6 +124,7 @@ static void motion(Text *t) {
   const Eqns *e = t->e;
   const Model *m = e->m;
   if (e->n && !e->mass_known) lifted_motion(t);
+  else if (m->families.n) text_heading(t, "equations of motion while contacts of families are open");
   else text_heading(t, m->hamiltonian ? "Hamilton's equations" : "equations of motion");
   const Expr *rows = e->mass_known ? mass_rows(t) : NULL;
   for (uint32_t i = 0; rows && i < e->n; i++)

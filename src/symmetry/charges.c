@@ -296,7 +296,10 @@ const char *charges_energy_text(const Eqns *e) {
   enum { LINE = 100 };
   const Noether *is = &e->charges[0].proof;
   if (is->jumps) return "energy changes (L jumps, and the energy with it)";
-  const char *events = motion_jumps(e->m) ? " between events" : "", *name = e->m->hamiltonian ? "H" : "E";
+  const char *events = e->m->families.n     ? " while contacts of families are open"
+                       : motion_jumps(e->m) ? " between events"
+                                            : "";
+  const char *name = e->m->hamiltonian ? "H" : "E";
   const char *inputs = is->by_formulas ? " while inputs follow their formulas" : "";
   if (is->drift == PROVED_ZERO)
     return arena_printf(e->m->arena, "energy is conserved%s%s%s", events, inputs, reason_of(e));

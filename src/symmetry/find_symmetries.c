@@ -405,7 +405,7 @@ const char *noether_note_on_impacts(const Model *m) {
   if (model_conditional(m))
     return "constraints with `while` change charges where they begin, and while they hold, if their symmetry moves "
            "them: the charges are those of the motion without them";
-  if (m->contacts.n) return "impacts and contacts change charges: the balances hold between them";
+  if (m->contacts.n || m->families.n) return "impacts and contacts change charges: the balances hold between them";
   for (uint32_t i = 0; i < m->events.n; i++) setting += m->events.at[i].actions.n > 0;
   return setting ? "events change charges: the balances hold between them" : NULL;
 }

@@ -489,7 +489,7 @@ Noether noether_prove(const Eqns *e, const Generator *by) {
   Expr whole = out.potential ? expr_sub(w.g, out.F, out.potential) : out.F;
   out.charge = charge_of(&w, whole);
   out.scale = scale_of(&w, whole);
-  out.jumps = e->m->families.n || discontinuities_of(e, out.charge).n > 0 || moves_jumps(&w);
+  out.jumps = discontinuities_of(e, out.charge).n > 0 || moves_jumps(&w);
   return out;
 }
 

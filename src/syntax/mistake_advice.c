@@ -113,6 +113,7 @@ static const char *missing_operator(const Parse *cx) {
   const Token *t = &cx->current, *b = &cx->before;
   if ((t->name && has_word("if then else when where", t->name)) || (b->name && has_word("if then else", b->name)))
     return "a choice is written `if(x > 0, a, b)`: a where the condition holds, b where not";
+  if (t->name && strcmp(t->name, "mod") == 0) return "a remainder is `mod(a, b)`";
   if (t->kind == TOK_IDENT && b->kind == TOK_NUMBER)
     return arena_printf(cx->ast->arena, "a unit stands in brackets: `[%s]`; a product is written with `*`", t->name);
   if (b->kind == TOK_IDENT && is_function(b->name))
@@ -192,6 +193,8 @@ static const struct {
     {ANY, TOK_ASSIGN, TOK_IN, ANY, "a range is written `i in 1..N`"},
     {ANY, TOK_IN, TOK_RBRACKET, ANY, "`for i in 1..N { … }` around a statement makes one for each i"},
     {ANY, ANY, TOK_IN, TOK_TIMES, "a range is written `i in 1..N`, a sum over it `sum(i in 1..N, x[i])`"},
+    {ANY, TOK_IN, TOK_RPAREN, ANY, "a sum over two indices is a sum of sums: `sum(i in 1..N, sum(j in 1..K, x[i,j]))`"},
+    {TOK_FOR, TOK_COMMA, TOK_LBRACE, ANY, "one `for` stands inside another: `for i in 1..N { for j in 1..K { … } }`"},
     {ANY, TOK_COMMA, TOK_RANGE, ANY, "a range is written `i in 1..N`"},
     {ANY, TOK_COMMA, TOK_RPAREN, ANY, "a function with several arguments has no `.` in its name: `pow(x, 2)`"},
     {ANY, TOK_RANGE, TOK_RBRACKET, ANY, "a family has a size: `x[N]` has the members 1 to N"},

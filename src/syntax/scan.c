@@ -242,5 +242,6 @@ int scan_unknown(Scan *s, Token *t, const char *text, int n) {
   return bad(s, t, 0, 1, arena_printf(s->arena, "`%c` is not a sign of this language", c),
              c == '\\' ? "this is not LaTeX: write `x'` for \\dot{x}, `x''` for \\ddot{x}, `a/b` for \\frac{a}{b}, "
                          "`theta` or `θ` for \\theta"
-                       : NULL);
+             : c == '%' ? "a remainder is `mod(a, b)`; a comment begins with `#`"
+                        : NULL);
 }

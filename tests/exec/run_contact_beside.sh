@@ -62,6 +62,7 @@ check "weights pull blocks" run table
 check "friction holds the first" near "$(final 'w\[1\]')" 0 1e-15
 check "the second slides" near "$(final 'w\[2\]')" "$(calc "-5*0.25/1.75")" 1e-12
 check "the third, faster" near "$(final 'w\[3\]')" "$(calc "-5*1/2.5")" 1e-12
+check "friction has its work, 0.5*10 of the paths" near "$(number dry_friction)" "$(calc "-5*(5*0.25/1.75 + 2)")" 1e-11 # with the last step's, 0.01*5*v
 
 # ---- a slider on a guide with friction 0.2, pressed by three blocks that lie on it with friction 0.1: 0.2*(1 + 3) + 0.1*3 of g until it stops
 model guide <<'END_OF'
@@ -96,6 +97,50 @@ check "stands" near "$(final 'y\[5\]')" 5 1e-12
 check "friction by its whole weight, 0.3*50, holds" near "$(final x)" 0 1e-15
 check "less does not" run floor mu=0.2
 check "the rest moves it" near "$(final x)" 1 1e-12 # (12 - 0.2*50)/2
+
+# ---- a cart drawn by a spring breaks loose from static friction with its load, which friction holds on it or lets slide
+model cart <<'END_OF'
+model cart
+const N = 2
+coord x, b[N], y[N]
+param g = 10, k = 200, M = 3, m = 5, mu = 0.4, D = 1.4, S = 2.1
+lagrangian = M/2*x'^2 - k/2*(x - t)^2 + sum(i in 1..N, m/2*(b[i]'^2 + y[i]'^2) - m*g*y[i])
+friction wheel on x: D, static = S
+contact bed[i in 1..N]: y[i] >= 0, restitution = 0, friction = mu, slip = b[i]' - x'
+scene s { span 1; method moreau(step = 0.001); output x, b }
+END_OF
+# from S/k on W u'' = -k u, u = x - t + D/k, which pulls with weight W; the step is of order 2, (h w)^2 = 7e-5 with w^2 = k/M
+gone() { calc "$1 - $D/200 + ($D - 2.1)/200*cos((w = sqrt(200/$W))*($1 - 2.1/200)) - sin(w*($1 - 2.1/200))/w"; }
+check "a cart with a load" run cart
+D=1.4 W=13
+check "breaks loose" near "$(final x)" "$(gone 1)" 7e-5
+check "the load stays on it" near "$(final 'b\[2\]')" "$(final x)" 1e-12
+check "a light load" run cart m=0.5 mu=0.01 --until 0.7
+D=1.5 W=3 # 1.4, and 0.01*10 of the load
+check "lets the cart go" near "$(final x)" "$(gone 0.7)" 7e-5
+check "slides" near "$(final 'b\[1\]')" "$(calc "0.01*10*(0.7 - 2.1/200)^2/2")" 7e-5
+
+# ---- impulses of families are no work of forces: drag, z' = exp(-t), and balls that come to rest
+model work <<'END_OF'
+model work
+const N = 2
+coord y[N], z
+lagrangian = sum(i in 1..N, y[i]'^2/2 - 10*y[i]) + z'^2/2
+force z = -z'
+contact floor[i in 1..N]: y[i] >= 0, restitution = 0.1
+scene s { start y[i in 1..N] = i, z' = 1; span 2; method moreau(step = 0.001); output y }
+END_OF
+tells() { # tells WORDS COMMAND [MODEL]: its output for the model has these words
+  "$LAGC" "$2" "$TMP/${3:-work}.lag" >"$TMP/log" 2>&1 && grep -q -e "$1" "$TMP/log" || { cat "$TMP/log"; return 1; }
+}
+check "the work is that of drag, (exp(-4) - 1)/2" tells '^energy balance: .*work of forces and explicit time: -0.490842;' run
+check "the rest is that of impacts, 30 to the depth at the end" tells '^impacts and events: -30.00[0-9]* of energy' run
+check "L has no jumps" tells "energy changes: dE/dt = -z'^2" check
+sed '/force z/d' "$TMP/work.lag" >"$TMP/free.lag"
+check "conserved, but for contacts" tells 'energy is conserved while contacts of families are open' check free
+check "derive says when its equations hold" tells 'equations of motion while contacts of families are open' derive
+check "no step is small enough for impacts" says 'near them; compare runs with half the step' run work --accuracy 1e-6
+check "noether names impacts" tells 'impacts and contacts change charges' noether
 
 # ---- a pile with a double pendulum, rods and walls: its families against single contacts
 pile() { # NAME HIT END FLOOR BOB COUPLING

@@ -52,7 +52,8 @@ wrong() { # wrong WORDS ARGS...
 }
 check "options of methods" says "variational(step=0.1, order=4)" models/pendulum.lag --method 'variational(order=4)' --step 0.1
 check "also in front of a scene" says "gauss(step=0.1, stages=3)" models/pendulum.lag --method 'gauss(stages=3)' --step 0.1 wide
-check "a method without them says so" wrong 'method rk45 has no option "order"' --method 'rk45(order=4)'
+check "a method without them says so" wrong 'method rk45 has no option "order": it has step, max_step, ' --method 'rk45(order=4)'
+check "reports write the tolerance like an option" wrong 'has no option "tol": the tolerance stands apart, --tol' --method 'rk45(tol=1e-8)'
 check "an odd order is refused" wrong "order = 3: it is a number from 2 to 8 in steps of 2" --method 'variational(order=3)'
 check "half a stage is refused" wrong "stages = 1.5: it is a whole number from 1 to 4" --method 'gauss(stages=1.5)'
 # Failures of steps that are far too long: the message names the failure, the step, and a remedy.

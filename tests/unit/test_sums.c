@@ -252,7 +252,8 @@ static void conditions_divide_the_range(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
   const char *messages;
-  Eqns *e = try_family(a, "const N = %d\ncoord x[N]\nlagrangian = sum(i in 1..N, x[i]'^2/2) -\n"
+  Eqns *e = try_family(a, "const N = %d\ncoord x[N]\nlet unread[i in 1..N] = i*x[i]\n"
+                          "lagrangian = sum(i in 1..N, x[i]'^2/2) -\n"
                           "  sum(i in 1..N, (x[if(i < N, i+1, 1)] - x[i])^2) -\n"
                           "  sum(i in 1..N, if(not i == 9 and i > 2, i*cos(x[i-2]), x[N+1-i])) -\n"
                           "  sum(i in 0..N, d[i]^2) - sum(i in 1..N, sum(j in 1..N, if(i < 4, x[i], 2*x[j])*x[i]))\n"
