@@ -2,9 +2,10 @@
 #include "model/family_size.h"
 
 /* Facts about an expression. FIXED: its value depends on the size or on an index. PLACE: it says where a member stands,
- * or is a small number: a sum of few indices and ends, or of halves of them, and at most FAMILY_END to a side. FALLS: it
- * may be negative. UNSURE: far from the ends its sign may be another than near them. RUN: the compiler does not know
- * its value. MOVES: nor do the parameters determine it. MIXED: as UNSURE, of what is multiplied by values that move. */
+ * or is a small number: a sum of few indices and ends, or of halves of them, and at most FAMILY_END to a side.
+ * FALLS: it may be negative. UNSURE: far from the ends its sign may be another than near them. RUN: the compiler does
+ * not know its value. MOVES: nor do the parameters determine it. MIXED: as UNSURE, of what is multiplied by values that
+ * move. */
 enum { FIXED = 1, PLACE = 2, FALLS = 4, UNSURE = 8, RUN = 16, MOVES = 32, MIXED = 64 };
 
 enum { MOST_WEIGHT = 4 };
