@@ -71,7 +71,16 @@ special emit 'a constant that jumps' 'const M = if(N > 1500, 2, 3)' "$bodies" "p
 special emit 'a function that jumps' 'function f(a) = if(a > 1500, 2, 1)' "$bodies" "potential = sum(i in 1..N, f(i)*k*x[i]^2)"
 special check 'masses that become negative' "kinetic = sum(i in 1..N, (2 - 0.001*i)*k/2*x[i]'^2)" "$ring"
 special check 'masses that a sine makes negative' "kinetic = sum(i in 1..N, cos(0.001*i)*k/2*x[i]'^2)" "$ring"
-special check 'masses whose terms cancel' "kinetic = sum(i in 1..N, ((3 - i) + 1.002*i)*k/2*x[i]'^2)" "$ring"
+special check 'masses whose terms cancel' "kinetic = sum(i in 1..N, ((3 - i) + 0.999*i)*k/2*x[i]'^2)" "$ring"
+special check 'masses of parameters that become negative' "kinetic = sum(i in 1..N, (k*2 - 0.001*k*i)/2*x[i]'^2)" "$ring"
+special check 'masses of parameters that a sine makes negative' "kinetic = sum(i in 1..N, cos(0.001*k*i)*k/2*x[i]'^2)" "$ring"
+special check 'a parameter of each that becomes negative' 'param c[i in 1..N] = 2*k - 0.001*i' "kinetic = sum(i in 1..N, c[i]/2*x[i]'^2)" "$ring"
+special check 'terms of masses' "kinetic = sum(i in 1..N, k*2*x[i]'^2 - 0.001*k*i*x[i]'^2)" "$ring"
+special check 'terms of masses, by their number' "kinetic = 1500*k*x[1]'^2 + sum(i in 2..N, k*x[i]'^2) - sum(j in 1..N, k*x[1]'^2)" "$ring"
+special check 'a value by the size' 'param c = N' "kinetic = sum(i in 1..N, (1500 - c)/2*x[i]'^2)" "$ring"
+special check "a scene's value by the size" 'param c = 1' "kinetic = sum(i in 1..N, (1500 - c)/2*x[i]'^2)" "$ring" 'scene first { c = N }'
+special check 'a function of a value by the size' 'function f(a) = 1500 - a' 'param c = N' "kinetic = sum(i in 1..N, f(c)/2*x[i]'^2)" "$ring"
+special emit 'a constant with the name of an index' 'const j = 200' "kinetic = sum(i in 1..N, if(j < i and i < N/2, 1, -1)*k/2*x[i]'^2)" "$ring + sum(j in 1..3, x[j]^2)"
 special emit 'a parameter with decimals' 'param c = 0.001*N' "$bodies" "potential = sum(i in 1..N, c*x[i]^2)"
 special emit 'a length over the number' "$bodies" "potential = sum(i in 1..N, k/N*x[i]^2)"
 tap_end
