@@ -130,6 +130,8 @@ int main(int argc, char **argv) {
   for (int k = 0; k < 2; k++) {
     q[k] = room(nq, sizeof **q), v[k] = room(nq, sizeof **v);
     SCENE.start(&SCENE, p, q[k], v[k], NULL);
+    for (int i = 0, m1 = (int)(cbrt(n) + 0.5); i < n; i++) /* a simple cubic crystal, which melts */
+      q[k][3*i] = side/m1*(i % m1), q[k][3*i + 1] = side/m1*(i/m1 % m1), q[k][3*i + 2] = side/m1*(i/m1/m1);
     ns[k] = run(k, q[k], v[k], a, steps);
   }
   for (size_t i = 0; i < nq; i++) apart = fmax(apart, fabs(q[0][i] - q[1][i]));
