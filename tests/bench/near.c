@@ -66,7 +66,8 @@ static void make_lists(const double *q) {
     const int a = cell_of(q + 3*i, cells, 0) + cells, b = cell_of(q + 3*i, cells, 1) + cells,
               c = cell_of(q + 3*i, cells, 2) + cells;
     for (int k = 0; k < 27; k++)
-      add_pairs(q, i, ((a + k/9 - 1) % cells*cells + (b + k/3 % 3 - 1) % cells)*cells + (c + k % 3 - 1) % cells, reach2);
+      add_pairs(q, i, ((a + k/9 - 1) % cells*cells + (b + k/3 % 3 - 1) % cells)*cells + (c + k % 3 - 1) % cells,
+                reach2);
   }
   from[n] = pairs;
 }
