@@ -103,7 +103,7 @@ typedef struct PlottedCurves {
   PictureNote *note; /* [nnotes], or NULL */
 } PlottedCurves;
 
-/* What the command line asks of a picture: PICTURE_FLAG and PICTURE_TEXT of the table of options. */
+/* Options of a picture on the command line: PICTURE_FLAG and PICTURE_TEXT of the table of options. */
 typedef struct PictureOptions {
 #define PICTURE_FLAG(f) int f;
 #define PICTURE_TEXT(f) const char *f;

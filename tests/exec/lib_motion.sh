@@ -13,3 +13,10 @@ final() { sed 's/.*"final": {//' "$TMP/json" | sed -n "s/.*\"$1\": \\([-0-9.e+]*
 cell() { awk -F, -v t="$1" -v c="$2" '$1 == t { print $c }' "$TMP/csv"; } # TIME COLUMN
 near() { close_to "$@"; }
 calc() { awk "BEGIN { printf \"%.17g\", $1 }"; }
+
+says() { # says WORDS COMMAND MODEL ARGS...: a refusal with these words
+  words=$1 command=$2 name=$3
+  shift 3
+  "$LAGC" "$command" "$TMP/$name.lag" "$@" >"$TMP/log" 2>&1 && { cat "$TMP/log"; return 1; }
+  grep -q -e "$words" "$TMP/log" || { cat "$TMP/log"; return 1; }
+}

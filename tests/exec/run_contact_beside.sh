@@ -3,13 +3,6 @@
 # the motion of models with every contact written out, saved states, a pile on a pendulum.
 . tests/exec/lib_motion.sh
 
-says() { # says WORDS COMMAND MODEL ARGS...: a refusal with these words
-  words=$1 command=$2 name=$3
-  shift 3
-  "$LAGC" "$command" "$TMP/$name.lag" "$@" >"$TMP/log" 2>&1 && { cat "$TMP/log"; return 1; }
-  grep -q -e "$words" "$TMP/log" || { cat "$TMP/log"; return 1; }
-}
-
 # ---- a ball of mass m0 meets one of two masses m on a rod, whose direction makes an angle f with the line of impact: the impulse is
 # (1 + e) v/(1/m0 + R), R = sin(f)^2/m + cos(f)^2/(2 m), and rod and balls have momentum
 model rod <<'END_OF'

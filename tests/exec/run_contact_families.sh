@@ -3,13 +3,6 @@
 # single contacts, lists of neighbours against all pairs, a text that does not grow with N, saved states, refusals.
 . tests/exec/lib_motion.sh
 
-says() { # says WORDS COMMAND MODEL ARGS...: a refusal with these words
-  words=$1 command=$2 name=$3
-  shift 3
-  "$LAGC" "$command" "$TMP/$name.lag" "$@" >"$TMP/log" 2>&1 && { cat "$TMP/log"; return 1; }
-  grep -q -e "$words" "$TMP/log" || { cat "$TMP/log"; return 1; }
-}
-
 # ---- balls on a line: of masses m and 3 m, with restitution e, velocities after one impact (Newton's law)
 model line <<'END_OF'
 model line
