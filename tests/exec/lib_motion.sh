@@ -14,7 +14,7 @@ cell() { awk -F, -v t="$1" -v c="$2" '$1 == t { print $c }' "$TMP/csv"; } # TIME
 near() { close_to "$@"; }
 calc() { awk "BEGIN { printf \"%.17g\", $1 }"; }
 
-says() { # says WORDS COMMAND MODEL ARGS...: a refusal with these words
+model_refused() { # model_refused WORDS COMMAND MODEL ARGS...: a refusal with these words
   words=$1 command=$2 name=$3
   shift 3
   "$LAGC" "$command" "$TMP/$name.lag" "$@" >"$TMP/log" 2>&1 && { cat "$TMP/log"; return 1; }

@@ -37,7 +37,7 @@ for i in 7 12; do check "block $i slides" near "$(final "r\[$i\].x")" "$(awk "BE
 check "blocks slide" run rows slides
 check "the second stops, and stays" near "$(final "r\[2\].x")" 0.02 1e-12 # 0.2^2/2, by 1
 check "the fourth goes on" near "$(final "r\[4\].x")" 0.9 1e-12          # 0.4 + 1/2
-check "a static friction below friction" says 'the static limit minus the friction' run rows mu_s=0.2
+check "a static friction below friction" model_refused 'the static limit minus the friction' run rows mu_s=0.2
 
 # ---- discs that slide on a floor until they roll: x' = 2 v/3 for a disc, whatever the friction
 model roll <<'END_OF'
@@ -122,23 +122,23 @@ check "and it is some" test "$(member "$TMP/6.c" | wc -l)" -gt 20
 fixed() { run near --fix all 2>&1; cp "$TMP/csv" "$TMP/fixed.csv"; grep -q 'note: --fix all leaves `R` a parameter' "$TMP/err"; }
 check "all parameters as numbers" fixed
 check "with the motion of parameters" same_as fixed
-check "a radius as a number" says '`R\[[0-9]\]` of a family of contacts as a number is not supported' emit near --fix R
+check "a radius as a number" model_refused '`R\[[0-9]\]` of a family of contacts as a number is not supported' emit near --fix R
 
 # ---- refusals
 edit() { sed "$2" "$TMP/near.lag" >"$TMP/$1.lag"; }
 edit over 's/0.1 + 0.15\*floor/0.1 + 0.05*floor/'
-check "bodies that overlap at the start" says 'hit\[[0-9], [0-9]\] is closed by .* at the start' run over
+check "bodies that overlap at the start" model_refused 'hit\[[0-9], [0-9]\] is closed by .* at the start' run over
 edit beyond 's/^contact wall.*/contact wall[i in 1..N]: r[i+1].x >= 0, restitution = 0/'
-check "an index out of range" says 'leaves the range of the family' check beyond
+check "an index out of range" model_refused 'leaves the range of the family' check beyond
 edit number 's/^contact wall.*/contact wall[i in 1..N]: r[i].x + i >= 0, restitution = 0/'
-check "an index as a number" says 'an index is a number here' check number
+check "an index as a number" model_refused 'an index is a number here' check number
 edit first 's/near(i, 0.14)/near(k, 0.14)/'
-check "near of another index" says '`near` takes the first index' check first
+check "near of another index" model_refused '`near` takes the first index' check first
 edit moves 's/near(i, 0.14)/near(i, r[1].x)/'
-check "a cut-off that moves" says 'the cut-off and the box of `near` move' check moves
+check "a cut-off that moves" model_refused 'the cut-off and the box of `near` move' check moves
 edit dop853 's/moreau(step = 0.002)/dop853/'
-check "another method" says 'does not follow the family of contacts `hit`' check dop853
-check "another method of the command line" says 'does not follow the family of contacts hit' run near --method dop853
-check "a header" says '= `lagc build --shared` makes a library' header near
-check "modes" says 'families of contacts in `lagc modes` are not supported' modes near
+check "another method" model_refused 'does not follow the family of contacts `hit`' check dop853
+check "another method of the command line" model_refused 'does not follow the family of contacts hit' run near --method dop853
+check "a header" model_refused '= `lagc build --shared` makes a library' header near
+check "modes" model_refused 'families of contacts in `lagc modes` are not supported' modes near
 tap_end
