@@ -11,7 +11,6 @@ run() { # run MODEL ARGS...: JSON in $TMP/json, rows in $TMP/csv
 number() { sed -n "s/.*\"$1\": \\([-0-9.e+]*\\).*/\\1/p" "$TMP/json"; }
 final() { sed 's/.*"final": {//' "$TMP/json" | sed -n "s/.*\"$1\": \\([-0-9.e+]*\\).*/\\1/p"; }
 cell() { awk -F, -v t="$1" -v c="$2" '$1 == t { print $c }' "$TMP/csv"; } # TIME COLUMN
-near() { close_to "$@"; }
 calc() { awk "BEGIN { printf \"%.17g\", $1 }"; }
 
 model_refused() { # model_refused WORDS COMMAND MODEL ARGS...: a refusal with these words

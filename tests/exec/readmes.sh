@@ -40,6 +40,10 @@ without_model() {
 }
 empty "each topic of the course has its models" "$(without_model <models/course.txt)"
 
+names_of() { grep -hoE '^[a-z_]+[(][)]' "$@" | LC_ALL=C sort; }
+names_of tests/tap.sh >"$TMP/tap"
+empty "functions of tap.sh have one meaning in all files that suites include" "$(for f in tests/*/lib_*.sh; do names_of "$f" | LC_ALL=C comm -12 - "$TMP/tap" | sed "s|^|$f: |"; done)"
+
 empty "no line of C above 120 columns" "$(find src runtime tests grammar -name '*.[chl]' -exec awk 'length($0) > 120 { print FILENAME ":" FNR }' {} +)"
 empty "no function of sources above 45 lines" "$(find src runtime -name '*.[ch]' -exec awk '
   FNR == 1 || /^}/ { if (first && FNR - first > 44) print FILENAME ":" first; first = 0 }

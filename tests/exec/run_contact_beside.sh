@@ -19,10 +19,10 @@ for of in 0:1e-13 0.5:2e-4 1.5707963267948966:1e-13; do # a few roundings; withi
   f=${of%:*}
   check "a ball meets a dumbbell at $f" run rod f=$f
   P="1.6/(0.5 + sin($f)^2 + cos($f)^2/2)"
-  check "it keeps 1 - P/m0" near "$(final "r\[1\].x'")" "$(calc "1 - $P/2")" "${of#*:}"
+  check "it keeps 1 - P/m0" close_to "$(final "r\[1\].x'")" "$(calc "1 - $P/2")" "${of#*:}"
   # behind the impact the rod turns: momentum, and its mean along x
-  check "momentum is kept" near "$(calc "2*$(final "r\[1\].x'") + $(final "r\[2\].x'") + $(final "r\[3\].x'")")" 2 1e-13
-  check "across, too" near "$(calc "$(final "r\[2\].y'") + $(final "r\[3\].y'")")" 0 1e-13
+  check "momentum is kept" close_to "$(calc "2*$(final "r\[1\].x'") + $(final "r\[2\].x'") + $(final "r\[3\].x'")")" 2 1e-13
+  check "across, too" close_to "$(calc "$(final "r\[2\].y'") + $(final "r\[3\].y'")")" 0 1e-13
 done
 
 # ---- weights on a rope over a pulley, the left one with a load: constant accelerations, which a step meets
@@ -37,8 +37,8 @@ contact load[i in 2..N]: y[i] - y[i-1] >= 1, restitution = 0
 scene s { start y[2] = 1; span 1; method moreau(step = 0.01); output y, z }
 END_OF
 check "a rope with a load" run atwood
-check "(2 - 1.5)/3.5 of g" near "$(final z)" "$(calc "10*0.5/3.5/2")" 1e-12
-check "the load is carried" near "$(calc "$(final 'y\[2\]') - $(final 'y\[1\]')")" 1 1e-12
+check "(2 - 1.5)/3.5 of g" close_to "$(final z)" "$(calc "10*0.5/3.5/2")" 1e-12
+check "the load is carried" close_to "$(calc "$(final 'y\[2\]') - $(final 'y\[1\]')")" 1 1e-12
 
 # ---- blocks on a table, each with a weight on a rope over its edge: (M - mu)/(1 + M) of g, or rest
 model table <<'END_OF'
@@ -52,10 +52,10 @@ contact top[i in 1..N]: r[i].y >= 0, restitution = 0, friction = mu, slip = r[i]
 scene s { span 1; method moreau(step = 0.01); output w }
 END_OF
 check "weights pull blocks" run table
-check "friction holds the first" near "$(final 'w\[1\]')" 0 1e-15
-check "the second slides" near "$(final 'w\[2\]')" "$(calc "-5*0.25/1.75")" 1e-12
-check "the third, faster" near "$(final 'w\[3\]')" "$(calc "-5*1/2.5")" 1e-12
-check "friction has its work, 0.5*10 of the paths" near "$(number dry_friction)" "$(calc "-5*(5*0.25/1.75 + 2)")" 1e-11 # with the last step's, 0.01*5*v
+check "friction holds the first" close_to "$(final 'w\[1\]')" 0 1e-15
+check "the second slides" close_to "$(final 'w\[2\]')" "$(calc "-5*0.25/1.75")" 1e-12
+check "the third, faster" close_to "$(final 'w\[3\]')" "$(calc "-5*1/2.5")" 1e-12
+check "friction has its work, 0.5*10 of the paths" close_to "$(number dry_friction)" "$(calc "-5*(5*0.25/1.75 + 2)")" 1e-11 # with the last step's, 0.01*5*v
 
 # ---- a slider on a guide with friction 0.2, pressed by three blocks that lie on it with friction 0.1: 0.2*(1 + 3) + 0.1*3 of g until it stops
 model guide <<'END_OF'
@@ -70,8 +70,8 @@ contact on[i in 1..N]: b[i] - y >= 0, restitution = 0, friction = 0.1, slip = x'
 scene s { start x' = 4.4; span 1; method moreau(step = 0.01); output x every 0.25 }
 END_OF
 check "a slider with blocks" run guide
-check "slides" near "$(cell 0.25 2)" 0.75625 1e-10 # 4.4 t - 5.5 t^2
-check "and stops" near "$(final x)" 0.88 1e-10
+check "slides" close_to "$(cell 0.25 2)" 0.75625 1e-10 # 4.4 t - 5.5 t^2
+check "and stops" close_to "$(final x)" 0.88 1e-10
 
 # ---- a single contact by its name, a floor with friction, under a column of a family
 model floor <<'END_OF'
@@ -86,10 +86,10 @@ contact ground: y[1] >= 1, restitution = 0, friction = mu, slip = x'
 scene s { start y[i in 1..N] = i; span 1; method moreau(step = 0.01); output y, x }
 END_OF
 check "a column on a ground" run floor
-check "stands" near "$(final 'y\[5\]')" 5 1e-12
-check "friction by its whole weight, 0.3*50, holds" near "$(final x)" 0 1e-15
+check "stands" close_to "$(final 'y\[5\]')" 5 1e-12
+check "friction by its whole weight, 0.3*50, holds" close_to "$(final x)" 0 1e-15
 check "less does not" run floor mu=0.2
-check "the rest moves it" near "$(final x)" 1 1e-12 # (12 - 0.2*50)/2
+check "the rest moves it" close_to "$(final x)" 1 1e-12 # (12 - 0.2*50)/2
 
 # ---- a cart drawn by a spring breaks loose from static friction with its load, which friction holds on it or lets slide
 model cart <<'END_OF'
@@ -106,12 +106,12 @@ END_OF
 gone() { calc "$1 - $D/200 + ($D - 2.1)/200*cos((w = sqrt(200/$W))*($1 - 2.1/200)) - sin(w*($1 - 2.1/200))/w"; }
 check "a cart with a load" run cart
 D=1.4 W=13
-check "breaks loose" near "$(final x)" "$(gone 1)" 7e-5
-check "the load stays on it" near "$(final 'b\[2\]')" "$(final x)" 1e-12
+check "breaks loose" close_to "$(final x)" "$(gone 1)" 7e-5
+check "the load stays on it" close_to "$(final 'b\[2\]')" "$(final x)" 1e-12
 check "a light load" run cart m=0.5 mu=0.01 --until 0.7
 D=1.5 W=3 # 1.4, and 0.01*10 of the load
-check "lets the cart go" near "$(final x)" "$(gone 0.7)" 7e-5
-check "slides" near "$(final 'b\[1\]')" "$(calc "0.01*10*(0.7 - 2.1/200)^2/2")" 7e-5
+check "lets the cart go" close_to "$(final x)" "$(gone 0.7)" 7e-5
+check "slides" close_to "$(final 'b\[1\]')" "$(calc "0.01*10*(0.7 - 2.1/200)^2/2")" 7e-5
 
 # ---- impulses of families are no work of forces: drag, z' = exp(-t), and balls that come to rest
 model work <<'END_OF'
@@ -239,7 +239,7 @@ END_OF
 check "200 discs with drag, 190 at once in contact" run pour
 check "are so many" test "$(number at_once)" -gt 150
 joined() { calc "sqrt(($(final 'r\[1\].x') - $(final 'r\[2\].x'))^2 + ($(final 'r\[1\].y') - $(final 'r\[2\].y'))^2)"; }
-check "the rod keeps its length" near "$(joined)" 0.12 1e-15
+check "the rod keeps its length" close_to "$(joined)" 0.12 1e-15
 
 # ---- the manual's 20 discs: their impulses swing for ever by 1e-7 m/s, at 0.647 s, and forces with them, at 0.91 s
 sed -n '/^model pour/,/^}/p' grammar/LANGUAGE.md >"$TMP/manual.lag"

@@ -101,12 +101,12 @@ if [ "${browser:-}" ]; then
   }
   dom "$TMP/m.html" '{"scene":"s","effects":[],"t":3.5,"fine":90}' >"$TMP/dom"
   x=$(sed -n 's/.*data-state="{&quot;x&quot;:\([-.0-9e]*\),.*/\1/p' "$TMP/dom")
-  check "a browser computes x = cos t" near "${x:-none}" "$(calc 'cos(3.5)')" 1e-9
+  check "a browser computes x = cos t" close_to "${x:-none}" "$(calc 'cos(3.5)')" 1e-9
   check "without a complaint" grep -q '<p id="said"[^>]*></p>' "$TMP/dom"
   dom "$TMP/m.html" '{"scene":"s","effects":["drag"],"t":3.5,"fine":90}' >"$TMP/dom"
   x=$(sed -n 's/.*data-state="{&quot;x&quot;:\([-.0-9e]*\),.*/\1/p' "$TMP/dom")
   # x'' + 2 x' + x = 0 from x = 1 at rest: (1 + t) exp(-t)
-  check "with drag, (1 + t) exp(-t)" near "${x:-none}" "$(calc '4.5*exp(-3.5)')" 1e-9
+  check "with drag, (1 + t) exp(-t)" close_to "${x:-none}" "$(calc '4.5*exp(-3.5)')" 1e-9
   # The bob of a pendulum, dragged to a place beside its circle: it follows the direction.
   cat >"$TMP/drag" <<'END'
 <script>

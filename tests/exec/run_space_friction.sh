@@ -23,14 +23,14 @@ T=$(calc "sqrt($sx^2 + $sy^2)/(3.5*0.2*9.81)")
 for tol in 1e-6 1e-9 1e-12; do
   allowed=$(calc "300*$tol + 1e-12")
   check "a billiard ball, $tol" run bowl s --tol $tol
-  check "rolls along x" near "$(final "r.x'")" "$(calc "2 - 2/7*$sx")" "$allowed"
-  check "and y" near "$(final "r.y'")" "$(calc "-2/7*$sy")" "$allowed"
-  check "after a parabola: x" near "$(final r.x)" "$(calc "2*2 - 2/7*$sx*(2 - $T/2)")" "$allowed"
-  check "y" near "$(final r.y)" "$(calc "-2/7*$sy*(2 - $T/2)")" "$allowed"
+  check "rolls along x" close_to "$(final "r.x'")" "$(calc "2 - 2/7*$sx")" "$allowed"
+  check "and y" close_to "$(final "r.y'")" "$(calc "-2/7*$sy")" "$allowed"
+  check "after a parabola: x" close_to "$(final r.x)" "$(calc "2*2 - 2/7*$sx*(2 - $T/2)")" "$allowed"
+  check "y" close_to "$(final r.y)" "$(calc "-2/7*$sy*(2 - $T/2)")" "$allowed"
 done
 check "dropped, it ends alike" run bowl drop --tol 1e-11
-check "x" near "$(final "r.x'")" "$(calc "2 - 2/7*$sx")" 1e-9 # what the last bounces leave out
-check "y" near "$(final "r.y'")" "$(calc "1 - 2/7*(1 + $sy)")" 1e-9
+check "x" close_to "$(final "r.x'")" "$(calc "2 - 2/7*$sx")" 1e-9 # what the last bounces leave out
+check "y" close_to "$(final "r.y'")" "$(calc "1 - 2/7*(1 + $sy)")" 1e-9
 
 # ---- a puck across a slope of angle al: its path curves until it stops at T = v0 (k + cos f0)/(g sin al (k^2 - 1)), k = mu/tan al; the slip comes in along the slope as a power 1/(k - 1)
 model slope <<'END_OF'
@@ -44,11 +44,11 @@ scene s { start x' = v0*cos(f0), y' = v0*sin(f0); span 5 }
 END_OF
 for k in 1.5 2 6; do
   check "a puck on a slope, k = $k" run slope s k=$k --tol 1e-11
-  check "stops" near "$(event "plane sticks.x")" "$(calc "2*($k + cos(2))/(10*sin(0.5)*($k^2 - 1))")" 2e-10
-  check "with its energy balanced" near "$(number drift)" 0 1e-10
+  check "stops" close_to "$(event "plane sticks.x")" "$(calc "2*($k + cos(2))/(10*sin(0.5)*($k^2 - 1))")" 2e-10
+  check "with its energy balanced" close_to "$(number drift)" 0 1e-10
 done
 check "thrown up the slope, it turns round" run slope s f0=3.1 --tol 1e-9
-check "and stops" near "$(event "plane sticks.x")" "$(calc "2*(1.5 + cos(3.1))/(10*sin(0.5)*1.25)")" 1e-9
+check "and stops" close_to "$(event "plane sticks.x")" "$(calc "2*(1.5 + cos(3.1))/(10*sin(0.5)*1.25)")" 1e-9
 
 # ---- a puck under a force that turns and grows slips off; SciPy's DOP853 (rtol 1e-12) from the first slip on
 model pulled <<'END_OF'
@@ -63,15 +63,15 @@ contact plane: z >= 0, restitution = 0, friction = mu, static = hold, slip = (x'
 scene s { span 4 [s]; output x, y }
 END_OF
 check "pulled off" run pulled s --tol 1e-9
-check "as it begins to slip" near "$(event "plane slips.x")" 1.5 1e-9
-check "x" near "$(final x)" -4.52122999 1e-6 # it begins by forces that have just grown enough, and turns fast at first
-check "y" near "$(final y)" 0.65636967 1e-6
+check "as it begins to slip" close_to "$(event "plane slips.x")" 1.5 1e-9
+check "x" close_to "$(final x)" -4.52122999 1e-6 # it begins by forces that have just grown enough, and turns fast at first
+check "y" close_to "$(final y)" 0.65636967 1e-6
 check "static friction above" run pulled s hold=0.4 --tol 1e-10
-check "x, then" near "$(final x)" -4.18050592 1e-8
-check "y, then" near "$(final y)" 0.3173173 1e-8
+check "x, then" close_to "$(final x)" -4.18050592 1e-8
+check "y, then" close_to "$(final y)" 0.3173173 1e-8
 check "by moreau" run pulled s hold=0.4 --method 'moreau(step=1e-3)'
-check "x by moreau" near "$(final x)" -4.18050592 5e-3 # a step late, at up to 5 m/s
-check "y by moreau" near "$(final y)" 0.3173173 5e-3
+check "x by moreau" close_to "$(final x)" -4.18050592 5e-3 # a step late, at up to 5 m/s
+check "y by moreau" close_to "$(final y)" 0.3173173 5e-3
 
 # ---- static friction of a guide in space whose force changes its side: N = 10 |sin 9 t| along both faces, pulled by 4 t. It breaks loose where 4 t = 0.45 N, and slides by 4 t - 0.3 N
 # until that has taken its speed; places by SciPy's quad and brentq over these intervals
@@ -87,10 +87,10 @@ guide plates: z = 0, friction = mu, static = 1.5*mu, slip = (x', y')
 scene s { span 2 [s]; tolerance 1e-11; output x, y every 2 [s] }
 EOF
 check "a block between plates" run plates s
-check "slips, stops, slips: x" near "$(cell 2 2)" 1.434419182063738 1e-9
-check "and y" near "$(cell 2 3)" 1.9125589094183173 1e-9
+check "slips, stops, slips: x" close_to "$(cell 2 2)" 1.434419182063738 1e-9
+check "and y" close_to "$(cell 2 3)" 1.9125589094183173 1e-9
 for h in 1e-3 1e-4 1e-5; do # a break-away is off by a step: 1.2 m/s of it
   check "by moreau, h = $h" run plates s --method "moreau(step=$h)"
-  check "to the step" near "$(cell 2 2)" 1.434419182063738 "$(awk "BEGIN { print 1.2*$h }")"
+  check "to the step" close_to "$(cell 2 2)" 1.434419182063738 "$(awk "BEGIN { print 1.2*$h }")"
 done
 tap_end
