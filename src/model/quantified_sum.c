@@ -337,9 +337,9 @@ int quantified_fits(Eval *ev, AstId id) {
   return 0;
 }
 
-/* Whether the sum is tried as one. */
+/* Whether the sum is tried as one: in no other sum or product; the index of a definition is a number in it. */
 static int may_stay(const Eval *ev, AstId id) {
-  return ast_expr(ev->b->ast, id)->kind == AST_SUM && !ev->sums && !ev->index.n &&
+  return ast_expr(ev->b->ast, id)->kind == AST_SUM && !ev->sums && !ev->loops.n &&
          !(ev->in_statement && ev->b->index.n) && !ev->function && ev->written_out != id && ev->b->sums_from;
 }
 

@@ -13,20 +13,21 @@ typedef struct {
   Name name[2];
   Affine is[2];
   int64_t lo, hi; /* of i */
+  int in_sum;     /* the text is the sum's own: it may name indices of what the sum stands in */
 } Indices;
 
 static int has(Name name, Name other) { return name && name == other; }
 
 /* Value of a plain whole number: an index around the sum, or a constant. */
-static int plain_whole(Eval *ev, Name name, int64_t *out) {
+static int plain_whole(Eval *ev, Name name, int in_sum, int64_t *out) {
   const Builder *b = ev->b;
   int ambiguous;
-  for (uint32_t k = ev->index.n; k-- > 0;)
+  for (uint32_t k = in_sum ? ev->index.n : 0; k-- > 0;)
     if (ev->index.at[k].name == name) {
       *out = ev->index.at[k].at;
       return 1;
     }
-  for (uint32_t k = ev->in_statement ? b->index.n : 0; k-- > 0;)
+  for (uint32_t k = in_sum && ev->in_statement ? b->index.n : 0; k-- > 0;)
     if (b->index.at[k].name == name) {
       *out = b->index.at[k].at;
       return 1;
@@ -69,7 +70,7 @@ static int is_affine(Eval *ev, AstId id, const Indices *of, int depth, Affine *o
           *out = of->is[k];
           return 1;
         }
-      return plain_whole(ev, x->name, &out->first);
+      return plain_whole(ev, x->name, of->in_sum, &out->first);
     case AST_NEG:
       if (!is_affine(ev, x->a, of, depth - 1, &a)) return 0;
       *out = (Affine){-a.first, -a.by_i, -a.by_j};
@@ -323,7 +324,7 @@ static int same_branches(Eval *ev, AstId id, Indices *of, int depth) {
 int64_t quantified_same_branches(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   const Ast *ast = ev->b->ast;
   const AstExpr *x = ast_expr(ast, id);
-  Indices own = {.name = {x->name}, .is = {{.by_i = 1}, {.by_j = 1}}, .lo = lo, .hi = hi};
+  Indices own = {.name = {x->name}, .is = {{.by_i = 1}, {.by_j = 1}}, .lo = lo, .hi = hi, .in_sum = 1};
   for (AstId k = ast_expr(ast, x->c)->first; k <= x->c; k++)
     if (ast_expr(ast, k)->kind == AST_SUM) own.name[1] = ast_expr(ast, k)->name;
   for (int64_t before = hi + 1; own.hi < before;) {
@@ -346,7 +347,7 @@ static void mark_beside(const Eval *ev, const struct Quantified *q, unsigned cha
 }
 
 int quantified_range(Eval *ev, struct Quantified *q, AstId from, AstId to) {
-  const Indices outer = {.name = {q->i}, .is = {{.by_i = 1}}, .lo = q->lo, .hi = q->hi};
+  const Indices outer = {.name = {q->i}, .is = {{.by_i = 1}}, .lo = q->lo, .hi = q->hi, .in_sum = 1};
   if (q->i == q->j || !is_affine(ev, from, &outer, MOST_DEPTH, &q->from) ||
       !is_affine(ev, to, &outer, MOST_DEPTH, &q->to))
     return refused(q, to, "the range inside is not affine in the outer index");
@@ -371,7 +372,7 @@ static int read_inner(Eval *ev, struct Quantified *q, unsigned char *skip) {
 }
 
 int quantified_reads(Eval *ev, struct Quantified *q, AstId id) {
-  const Indices own = {.name = {q->i, q->j}, .is = {{.by_i = 1}, {.by_j = 1}}, .lo = q->lo, .hi = q->hi};
+  const Indices own = {.name = {q->i, q->j}, .is = {{.by_i = 1}, {.by_j = 1}}, .lo = q->lo, .hi = q->hi, .in_sum = 1};
   q->first = ast_expr(ev->b->ast, id)->first;
   q->counts = ARENA_ARRAY(ev->b->arena, unsigned char, id - q->first + 1);
   if (!note_reads(ev, q, q->first, id, &own, NULL, MOST_DEPTH)) return 0;
@@ -397,6 +398,6 @@ int quantified_text(Eval *ev, struct Quantified *q) {
     if (kind == AST_AT || kind == AST_LIST || kind == AST_BIND || kind == AST_STRING) return 0;
   }
   if (q->inner && !read_inner(ev, q, skip)) return 0;
-  const Indices own = {.name = {q->i, q->j}, .is = {{.by_i = 1}, {.by_j = 1}}, .lo = q->lo, .hi = q->hi};
+  const Indices own = {.name = {q->i, q->j}, .is = {{.by_i = 1}, {.by_j = 1}}, .lo = q->lo, .hi = q->hi, .in_sum = 1};
   return note_reads(ev, q, q->first, last, &own, skip, MOST_DEPTH);
 }

@@ -42,4 +42,25 @@ check "a negative cut-off is refused" says 2 "the cut-off of near has a length o
 check "its C stands alone" "$CC" -std=c11 -Wall -Wextra -pedantic -Werror -I "$INC" -fsyntax-only "$TMP/gas.c"
 lines() { "$LAGC" emit "$TMP/gas.lag" -D "N=$1" | sed -n '/^static int accel/,/^}/p' | wc -l; }
 is "the length of the forces does not know N" "$(lines 36)" "$(lines 144)"
+
+# ---- sums in definitions by an index stay sums: on a square lattice each atom has 4 neighbours at each of the distances a, sqrt(2) a, 2 a
+cat >"$TMP/lattice.lag" <<'END'
+model lattice
+const N = 1024
+coord x[N], y[N]
+param a = 1.3, cut = 2.7 > 0, L = 32*a > 0
+kinetic = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2)
+function inside(s, d) = if(s < d^2, 1, 0)
+potential = sum(i in 1..N, sum(j in near(i, cut, x, y, L), (cut^2 - image(x[i] - x[j], L)^2 - image(y[i] - y[j], L)^2)^2))
+observe shell[k in 1..3] = sum(i in 1..N, sum(j in near(i, cut, x, y, L),
+  inside(image(x[i] - x[j], L)^2 + image(y[i] - y[j], L)^2, 1 + 0.55*k)))
+let mode[k in 1..3] = sum(i in 1..N, cos(2*pi*16*k*x[i]/L))/N
+observe alternating = mode[1], whole = mode[2]
+scene s { start x[i in 1..N] = a*mod(i - 1, 32), y[i in 1..N] = a*floor((i - 1)/32)
+  span 1
+  method verlet(step = 0.01)
+  output shell, alternating, whole every 1 }
+END
+"$LAGC" run "$TMP/lattice.lag" -o "$TMP/lattice.csv" >"$TMP/lattice.out" 2>&1
+is "families of observes and lets over sums" "0 2048 4096 6144 0 1" "$(awk -F, '$1 == "0" { printf "%d %d %d %d %.9g %.9g", $1, $2, $3, $4, 1e-12*int(1e12*$5), $6 }' "$TMP/lattice.csv")"
 tap_end
