@@ -226,7 +226,9 @@ static int note_read(Eval *ev, struct Quantified *q, AstId id, const Indices *of
     Subscript at = quantified_turns(q, r.at[k]);
     int64_t least, most;
     if (!loop_extent(&q->range, &at, &least, &most) || least < r.e->lo[k] || most > r.e->hi[k])
-      return refused(q, id, "this index leaves the range of the family");
+      return refused(q, id, arena_printf(ev->b->arena, "this index reaches %lld, and the members are `%s[%lld..%lld]`",
+                                         (long long)(least < r.e->lo[k] ? least : most), r.e->name,
+                                         (long long)r.e->lo[k], (long long)r.e->hi[k]));
   }
   if (r.e->kind == ENT_LET) return moves ? note_let(ev, q, id, &r, depth) : 1;
   if (r.e->kind != ENT_COORD && r.e->kind != ENT_STATE && r.e->kind != ENT_PARAM && r.e->kind != ENT_INPUT)

@@ -129,7 +129,7 @@ edit() { sed "$2" "$TMP/near.lag" >"$TMP/$1.lag"; }
 edit over 's/0.1 + 0.15\*floor/0.1 + 0.05*floor/'
 check "bodies that overlap at the start" model_refused 'hit\[[0-9], [0-9]\] is closed by .* at the start' run over
 edit beyond 's/^contact wall.*/contact wall[i in 1..N]: r[i+1].x >= 0, restitution = 0/'
-check "an index out of range" model_refused 'leaves the range of the family' check beyond
+check "an index out of range" model_refused 'this index reaches 7, and the members are `r\[1..6\]`' check beyond
 edit number 's/^contact wall.*/contact wall[i in 1..N]: r[i].x + i >= 0, restitution = 0/'
 check "an index as a number" model_refused 'an index is a number here' check number
 edit first 's/near(i, 0.14)/near(k, 0.14)/'
