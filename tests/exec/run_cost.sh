@@ -108,6 +108,9 @@ check "has a curve for each that is named" [ "$(grep -c '<path fill="none".*stro
 check "the band of twice the least time ends at the frame" awk '/stroke="none" d=/ { n++; gsub(/.* d="|".*/, ""); gsub(/[MLZ]/, " "); m = split($0, c, " ")
   for (i = 1; i < m; i += 2) bad += c[i] < 91.9 || c[i] > 560.1 || c[i + 1] < 51.9 || c[i + 1] > 490.1 } END { exit !(n == 1 && !bad) }' "$TMP/cost.svg"
 check "with its name" grep -q '>rk4' "$TMP/cost.svg"
+check "errors fall to the right, powers of ten at equal distances, to 0.1 pixel" awk -F '["><%]+' '/text-anchor="middle">10</ { x[++n] = $3; k[n] = $(NF - 3) }
+  END { for (i = 3; i <= n; i++) { d = (k[i] - k[1])*(x[2] - x[1]) - (k[2] - k[1])*(x[i] - x[1]); bad += d*d > 9 }
+    exit !(n >= 3 && !bad && (k[2] - k[1])*(x[2] - x[1]) < 0) }' "$TMP/cost.svg"
 is "names of limits stand above the frame, where no curve is" 0 "$(grep -c 'rotate(-90).*>\(rounding\|reference\)<' "$TMP/cost.svg")"
 check "and no other output" [ ! -s "$TMP/text" ]
 check "all runs as rows" text models/pendulum.lag --until 1 --seconds $sweep --methods rk4 -o "$TMP/cost.csv" --sketch
