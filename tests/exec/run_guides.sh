@@ -446,6 +446,13 @@ check "a telescope down a slope" in_time let_down go
 check "rests on its stops" close_to "$(final 'x\[4\]')" 0 1e-12
 check "its balance closes" close_to "$(number drift)" 0 1e-8 # the tolerance, ten times
 fi
+# ---- a disc in a journal of radius 0.1 that carries (3, -4): it turns by w^2/(2 mu r 5) until t = w/(mu r 5) = 5
+for size in 'hypot(lambda(px), lambda(py))' 'sqrt(lambda(px)^2 + lambda(py)^2)' 'sqrt(4*lambda(px)^2 + (2*lambda(py))^2)/2'; do
+  printf '%s\n' 'model pin; coord x, y, th' "lagrangian = (x'^2 + y'^2 + th'^2)/2 - 4*y" 'force x = 3' 'param mu = 0.2 >= 0, r = 0.1 > 0' 'constraint px: x = 0; constraint py: y = 0' "friction rub on th: mu*r*$size" "scene go { start th' = 0.5; span 6 }" >"$TMP/pin.lag"
+  check "a journal, by $size" run pin go
+  check "... stops after 1.25 rad" close_to "$(final th)" 1.25 1e-12
+done
+
 # ---- coefficients that depend on the place, outside of their range at the start
 begins() { # FRICTION: a bead on a rail at x = 2
   printf '%s\n' 'model bead; coord x, y' "lagrangian = (x'^2 + y'^2)/2 - 9.81*y" 'constraint rail: y = 0' "friction rub on x: $1" "scene s { start x = 2, x' = 6; span 1 }" >"$TMP/bead.lag"
