@@ -179,6 +179,10 @@ let x = r*cos(phi), y = r*sin(phi)
 scene s { start r = 1, phi' = 1; span 1e-9 }
 END
 is "a distance that no spring holds has no link" 'ball body 0 | 1 0 - | - - - | - - - | - - - - "(x, y)"' "$(shapes polar.lag)"
+printf '%s\n' 'model bead; coord r [m], phi [rad]' "kinetic = 1 [kg]/2*(r'^2 + r^2*phi'^2)" 'scene s { start r = 2, phi = 30 [deg]; span 1e-9 [s] }' >bead.lag
+is "polar coordinates" 'ball body 0 | 1.732 1 - | - - - | - - - | - - - - "(r, phi)"' "$(shapes bead.lag)"
+printf '%s\n' 'model wheels; coord a [rad], b [rad]' "kinetic = 1 [kg*m^2]/2*(a'^2 + b'^2)" 'scene s { start a = 0.5, b = 1; span 1e-9 [s] }' >wheels.lag
+is "angles alone are wheels side by side" 'disc body 0 | 0 0 - | - - - | 1 - - | 0.5 - - - "a";disc body 0 | 2.5 0 - | - - - | 1 - - | 1 - - - "b"' "$(shapes wheels.lag | paste -s -d';' -)"
 
 # ---- lagc plot --drawing ----
 # Both rods of a double pendulum are as long in the picture as a metre of its axes; positions are written to 0.1 pixels.
