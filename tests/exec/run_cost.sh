@@ -102,6 +102,14 @@ check "methods that are left out for one reason, in one line" text models/lorenz
 says '^not in the table: verlet, verlet4, variational(order=2), .*: cannot integrate a model with states'
 check "and no other" [ "$(grep -c "^not in the table" "$TMP/text")" = 1 ]
 
+check "nothing moves" text models/pendulum.lag th=0 "th'=0" --until 1 --seconds 0.3 --methods rk4
+says '^note: nothing moves, so that every method is exact'
+# a ball that stops at the floor, 1 m below, does so after sqrt(2/9.81) = 0.451524 s
+sed 's/{ y. = -e.y. }/{ stop }/' models/bouncing_ball.lag >"$TMP/falls.lag"
+check "an event" text "$TMP/falls.lag" drop --seconds 0.3 --methods rk45
+says '^an event ends the run at about t = 0.45152'
+check "what is left of the equations" text models/pendulum.lag --until 1 --seconds 0.3 --methods rk4 --error residual
+says '^error: what is left of the equations of motion in the middle of steps'
 check "a picture" text models/pendulum.lag --until 1 --seconds $sweep --methods rk4,rk45,verlet,verlet4 -o "$TMP/cost.svg" --quiet
 check "is whole" grep -q '</svg>' "$TMP/cost.svg"
 check "has a curve for each that is named" [ "$(grep -c '<path fill="none".*stroke-linejoin' "$TMP/cost.svg")" = 4 ]
