@@ -59,7 +59,9 @@ rows=some
 [ "${1:-}" != --all ] || rows=all
 case ${1:-} in --*) shift ;; esac
 case $kind in
-  test | bless) unset SLOW ;;
+  test | bless) # `make coverage ROWS=all`: each check of these suites
+    if [ "${COVERAGE:+${ROWS:-}}" = all ]; then export SLOW=1 ROWS && limit=7200; else unset SLOW; fi
+    ;;
   long) unset LAGC_OPTIMISE && export SLOW=1 ROWS=$rows ;;
   bench) unset LAGC_OPTIMISE SLOW ;;
 esac

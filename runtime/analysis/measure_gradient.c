@@ -361,14 +361,14 @@ static int put_places(MeasureGradient *g, double a, double b, double *y) {
   return rc;
 }
 
-/* Whether the sums' values go on as the last step left them, at a switch, too, whose time no function here gives; notes
- * them at t. */
-static void check_jumps(MeasureGradient *g, double t, int begins, double *y) {
+/* Notes the sums' values at t. goes_on: they must be those noted last, at a switch, too, whose time no function here
+ * gives. */
+static void check_jumps(MeasureGradient *g, double t, int goes_on, double *y) {
   if (lag_sim_eval(g->sim, t, y)) return;
   for (Sum *k = g->sum; k < g->sum + g->sums; k++) {
     double x = lag_measure_at(g->m, k->track->arg, t, y);
     k->most = fmax(k->most, fabs(x));
-    if (begins && fabs(x - k->last) > 1e-6 * k->most && lag_track_counts(k->track, t))
+    if (goes_on && fabs(x - k->last) > 1e-6 * k->most && lag_track_counts(k->track, t))
       g->refused = "a value jumps at a switch within the mean: make the value a state, S with flow S' = x, and take "
                    "S/t";
     k->last = x;
@@ -388,6 +388,7 @@ static int walk(MeasureGradient *g, double t, double *y) {
     for (double a = lag_sim_time(s), b, last = 0; rc == LAG_OK && g->sums && a != reach; last = b - a, a = b) {
       b = lag_measure_smooth(g->m, a, lag_measure_part(g->m, a, reach), last);
       rc = put_places(g, a, b, y);
+      check_jumps(g, b, fabs(b - a) < 0x1p-30 * fabs(reach - lag_sim_time(s)), y); /* so short: at a corner or a jump */
     }
     if (rc == LAG_OK) rc = lag_sim_advance(s, reach);
     if (rc == LAG_OK && g->sums) check_jumps(g, reach, 0, y);

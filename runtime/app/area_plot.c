@@ -127,7 +127,7 @@ static int find_half_axes(Cloud *c) {
     if (rc > 0) break;
   }
   if (rc < 0) rc = lag_app_error(&c->app->args, "%s", sim ? lag_sim_message(sim) : "out of memory");
-  for (int axis = 0; axis < 2 && rc >= 0; axis++) {
+  for (int axis = 0; axis < 2 && rc >= 0 && rc != EXIT_USAGE; axis++) {
     c->half[axis] = c->part * (most[axis] - least[axis]) / 2;
     if (!(c->half[axis] > 0))
       rc =

@@ -49,7 +49,8 @@ enum { PICTURE_WIDTH = 800, PICTURE_HEIGHT = 560, MARGIN = 92, NAMES = 240, HEAD
 
 /* Whole powers of ten, as decimal logarithms; x0 is the largest error. */
 static Panel panel_of(const Curve *all, int n) {
-  Panel r = {.x = MARGIN, .y = HEAD, .w = PICTURE_WIDTH - MARGIN - NAMES, .h = PICTURE_HEIGHT - HEAD - FOOT};
+  Panel r = {.x = MARGIN, .y = HEAD, .w = PICTURE_WIDTH - MARGIN - NAMES, .h = PICTURE_HEIGHT - HEAD - FOOT,
+             .xlog = 1, .ylog = 1, .xlabel = "error", .size = SIZE};
   if (n == 0) {
     r.x1 = -15;
     r.y0 = -6;
@@ -79,29 +80,6 @@ static const struct {
   const char *colour, *dash;
 } styles[LAG_COST_FAMILIES] = {{"#d55e00", ""},        {"#0072b2", ""}, {"#009e73", "9 4"}, {"#cc79a7", "2 3"},
                                {"#8a7f00", "9 4 2 4"}, {"#444444", ""}, {"#56b4e9", "9 4"}, {"#000000", "2 3"}};
-
-/* 10 to the power k, as a tick. */
-static void put_power(FILE *f, double x, double y, const char *anchor, double k) {
-  fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">10<tspan dy=\"-7\" font-size=\"14\">%.0f</tspan></text>\n",
-          x, y, anchor, k);
-}
-
-static void put_axes(FILE *f, const Panel *r) {
-  double bottom = r->y + r->h, right = r->x + r->w, stride = ceil((r->x0 - r->x1) / 8);
-  fprintf(f, "<rect x=\"%g\" y=\"%g\" width=\"%g\" height=\"%g\" fill=\"none\" stroke=\"#777\"/>\n", r->x, r->y, r->w,
-          r->h);
-  for (double k = r->x0; k >= r->x1; k--) {
-    fprintf(f, "<path d=\"M%.1f %dV%.1f\" stroke=\"#e4e4e4\"/>\n", lag_panel_x(r, k), HEAD, bottom);
-    if (fmod(r->x0 - k, stride) == 0.0) put_power(f, lag_panel_x(r, k), bottom + 26, "middle", k);
-  }
-  for (double k = r->y0; k <= r->y1; k++) {
-    fprintf(f, "<path d=\"M%d %.1fH%.1f\" stroke=\"#e4e4e4\"/>\n", MARGIN, lag_panel_y(r, k), right);
-    put_power(f, MARGIN - 10, lag_panel_y(r, k) + 7, "end", k);
-  }
-  lag_svg_text(f, (MARGIN + right) / 2, PICTURE_HEIGHT - 14, "text-anchor=\"middle\"", "error");
-  fprintf(f, "<text transform=\"translate(24 %.1f) rotate(-90)\" text-anchor=\"middle\">processor time [s]</text>\n",
-          (HEAD + bottom) / 2);
-}
 
 /* A vertical line at an error below which no curve means anything, with its name above it, on the side of `anchor`. */
 static void put_floor(FILE *f, const Panel *r, double error, const char *name, const char *anchor) {
@@ -207,7 +185,7 @@ int lag_cost_put_picture(const Picture *picture, void *cost) {
   int n = take_curves(c, all);
   Panel r = panel_of(all, n);
   lag_svg_large_head(picture, PICTURE_WIDTH, PICTURE_HEIGHT, SIZE);
-  put_axes(f, &r);
+  lag_svg_axes(f, &r, "processor time [s]", 1);
   put_floor(f, &r, DBL_EPSILON, "rounding", c->reference.uncertainty < DBL_EPSILON ? "end" : "start");
   put_floor(f, &r, c->reference.uncertainty, "reference", c->reference.uncertainty < DBL_EPSILON ? "start" : "end");
   put_front(f, &r, c);

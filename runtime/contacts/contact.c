@@ -296,16 +296,13 @@ static int check_friction(lag_sim *s, int i, const double *law) {
   int guide = lag_guide_of(m, i);
   const char *name = guide < 0 ? constraint_of(s, i - 1)->name : constraint_of(s, i)->name;
   const char *what = guide < 0 ? "contact" : "friction";
-  double mu = law[3 * i], hold = guide < 0 ? law[3 * i - 3] : law[3 * m->ncontacts + 4 * guide], back = law[3 * i + 1];
+  double mu = law[3 * i], hold = guide < 0 ? law[3 * i - 3] : law[3 * m->ncontacts + 4 * guide];
   if (!(mu >= 0))
     return lag_fail(s, LAG_EINVAL, "the %s %s has a friction of %.3g, which must be at least 0", what, name, mu);
-  if (!(hold >= mu))
-    return lag_fail(s, LAG_EINVAL,
-                    "the %s %s has a static friction of %.3g, which must be at least its friction while it slips, %.3g",
-                    what, name, hold, mu);
-  if (back >= 0 && back <= 1) return LAG_OK;
-  return lag_fail(s, LAG_EINVAL, "the contact %s has a tangential restitution of %.3g, which must be between 0 and 1",
-                  name, back);
+  if (hold >= mu) return LAG_OK;
+  return lag_fail(s, LAG_EINVAL,
+                  "the %s %s has a static friction of %.3g, which must be at least its friction while it slips, %.3g",
+                  what, name, hold, mu);
 }
 
 /* ---- impacts */

@@ -58,6 +58,9 @@ double lag_panel_x(const Panel *p, double x) { return p->x + (x - p->x0) / (p->x
 
 double lag_panel_y(const Panel *p, double y) { return p->y + p->h - (y - p->y0) / (p->y1 - p->y0) * p->h; }
 
+/* Pixels of a text of the panel's size, from those at size 14. */
+static double sized(const Panel *p, double pixels) { return p->size ? pixels * p->size / 14 : pixels; }
+
 static void tick_label(char *s, size_t n, double value, double step) {
   snprintf(s, n, "%.6g", fabs(value) < 1e-9 * step ? 0.0 : value);
 }
@@ -79,20 +82,20 @@ static void put_label(FILE *f, double x, double y, const char *attributes, const
   const char *power = strstr(s, "10^");
   if (!power) lag_svg_text(f, x, y, attributes, s);
   else
-    fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" %s>%.*s%s10<tspan dy=\"-6\" font-size=\"11\">%s</tspan></text>\n", x, y,
-            attributes, (int)strcspn(s, "*1"), s, power > s ? "\302\267" : "", power + 3);
+    fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" %s>%.*s%s10<tspan dy=\"-0.55em\" font-size=\"79%%\">%s</tspan></text>\n",
+            x, y, attributes, (int)strcspn(s, "*1"), s, power > s ? "\302\267" : "", power + 3);
 }
 
 /* A line of the grid at x, and its label, if it has one. */
 static void x_tick(FILE *f, const Panel *p, double x, const char *label) {
   fprintf(f, "<path d=\"M%.2f %.1fv%.1f\" class=\"g\"/>\n", lag_panel_x(p, x), p->y, p->h);
-  if (*label) put_label(f, lag_panel_x(p, x), p->y + p->h + 18, "text-anchor=\"middle\"", label);
+  if (*label) put_label(f, lag_panel_x(p, x), p->y + p->h + sized(p, 18), "text-anchor=\"middle\"", label);
 }
 
 static void y_tick(FILE *f, const Panel *p, double at, const char *label) {
   double y = lag_panel_y(p, at);
   fprintf(f, "<path d=\"M%.1f %.2fh%.1f\" class=\"g\"/>\n", p->x, y, p->w);
-  if (*label) put_label(f, p->x - 6, y + 5, "text-anchor=\"end\"", label);
+  if (*label) put_label(f, p->x - 6, y + sized(p, 5), "text-anchor=\"end\"", label);
 }
 
 double lag_dot_width(double rows) { return fmin(8, fmax(2, 40 / pow(rows, 0.4))); }
@@ -150,14 +153,14 @@ void lag_svg_axes(FILE *f, const Panel *p, const char *ylabel, int last) {
   char s[220];
   fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#fff\" stroke=\"#999\"/>\n", p->x, p->y,
           p->w, p->h);
-  if (p->xlog) log_ticks(f, p, p->x0, p->x1, last, x_tick);
+  if (p->xlog) log_ticks(f, p, fmin(p->x0, p->x1), fmax(p->x0, p->x1), last, x_tick);
   else linear_x(f, p, last);
   if (p->ylog) log_ticks(f, p, p->y0, p->y1, ylabel != NULL, y_tick);
   else linear_y(f, p, ylabel != NULL);
   snprintf(s, sizeof s, "%s%s", last ? p->xlabel : "", p->xlog ? ", logarithmic" : "");
-  if (last) lag_svg_text(f, p->x + p->w / 2, p->y + p->h + 40, "text-anchor=\"middle\" class=\"l\"", s);
+  if (last) lag_svg_text(f, p->x + p->w / 2, p->y + p->h + sized(p, 40), "text-anchor=\"middle\" class=\"l\"", s);
   if (!ylabel) return;
-  fprintf(f, "<text transform=\"translate(%.1f %.1f) rotate(-90)\" text-anchor=\"middle\" class=\"l\">", 18.0,
+  fprintf(f, "<text transform=\"translate(%.1f %.1f) rotate(-90)\" text-anchor=\"middle\" class=\"l\">", sized(p, 18),
           p->y + p->h / 2);
   lag_write_markup(f, ylabel);
   fputs(p->ylog ? ", logarithmic</text>\n" : "</text>\n", f);
@@ -172,9 +175,9 @@ void lag_svg_large_head(const Picture *p, int width, int height, int size) {
           width, height, width, height, size);
   lag_write_markup(f, p->title);
   fprintf(f,
-          "</title>\n<style>.g{stroke:#e4e4e4;stroke-width:1;fill:none}.l{font-size:15px}</style>\n"
+          "</title>\n<style>.g{stroke:#e4e4e4;stroke-width:1;fill:none}.l{font-size:%dpx}</style>\n"
           "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
-          width, height);
+          size + 1, width, height);
   snprintf(attributes, sizeof attributes, "font-size=\"%d\" font-weight=\"bold\"", size < 17 ? 17 : size);
   lag_svg_text(f, LEFT, 26, attributes, p->title);
 }

@@ -13,6 +13,7 @@ typedef struct Panel {
   double x, y, w, h;         /* rectangle in pixels */
   double x0, x1, y0, y1;     /* ranges of the data */
   int xlog, ylog;            /* 1: the data are decimal logarithms, and labels their powers of ten */
+  int size;                  /* of text, in pixels; 0: 14 */
   const char *xlabel;
 } Panel;
 
@@ -31,5 +32,6 @@ void lag_svg_levels(FILE *f, const Panel *p, const Beneath *b);
 void lag_svg_levels_range(const Beneath *b, Panel *p);
 void lag_svg_profile(FILE *f, const Panel *p, const Beneath *b);
 void lag_svg_profile_range(const Beneath *b, double x0, double x1, double *y0, double *y1);
-/* The panel's frame, grid and labels; last: with those of x; ylabel NULL: without those of y. */
+/* The panel's frame, grid and labels; last: with those of x; ylabel NULL: without those of y. A logarithmic x may
+ * fall to the right, x0 > x1. */
 void lag_svg_axes(FILE *f, const Panel *p, const char *ylabel, int last);

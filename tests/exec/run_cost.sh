@@ -102,12 +102,23 @@ check "methods that are left out for one reason, in one line" text models/lorenz
 says '^not in the table: verlet, verlet4, variational(order=2), .*: cannot integrate a model with states'
 check "and no other" [ "$(grep -c "^not in the table" "$TMP/text")" = 1 ]
 
+check "nothing moves" text models/pendulum.lag th=0 "th'=0" --until 1 --seconds 0.3 --methods rk4
+says '^note: nothing moves, so that every method is exact'
+# a ball that stops at the floor, 1 m below, does so after sqrt(2/9.81) = 0.451524 s
+sed 's/{ y. = -e.y. }/{ stop }/' models/bouncing_ball.lag >"$TMP/falls.lag"
+check "an event" text "$TMP/falls.lag" drop --seconds 0.3 --methods rk45
+says '^an event ends the run at about t = 0.45152'
+check "what is left of the equations" text models/pendulum.lag --until 1 --seconds 0.3 --methods rk4 --error residual
+says '^error: what is left of the equations of motion in the middle of steps'
 check "a picture" text models/pendulum.lag --until 1 --seconds $sweep --methods rk4,rk45,verlet,verlet4 -o "$TMP/cost.svg" --quiet
 check "is whole" grep -q '</svg>' "$TMP/cost.svg"
 check "has a curve for each that is named" [ "$(grep -c '<path fill="none".*stroke-linejoin' "$TMP/cost.svg")" = 4 ]
 check "the band of twice the least time ends at the frame" awk '/stroke="none" d=/ { n++; gsub(/.* d="|".*/, ""); gsub(/[MLZ]/, " "); m = split($0, c, " ")
   for (i = 1; i < m; i += 2) bad += c[i] < 91.9 || c[i] > 560.1 || c[i + 1] < 51.9 || c[i + 1] > 490.1 } END { exit !(n == 1 && !bad) }' "$TMP/cost.svg"
 check "with its name" grep -q '>rk4' "$TMP/cost.svg"
+check "errors fall to the right, powers of ten at equal distances, to 0.1 pixel" awk -F '["><%]+' '/text-anchor="middle">10</ { x[++n] = $3; k[n] = $(NF - 3) }
+  END { for (i = 3; i <= n; i++) { d = (k[i] - k[1])*(x[2] - x[1]) - (k[2] - k[1])*(x[i] - x[1]); bad += d*d > 9 }
+    exit !(n >= 3 && !bad && (k[2] - k[1])*(x[2] - x[1]) < 0) }' "$TMP/cost.svg"
 is "names of limits stand above the frame, where no curve is" 0 "$(grep -c 'rotate(-90).*>\(rounding\|reference\)<' "$TMP/cost.svg")"
 check "and no other output" [ ! -s "$TMP/text" ]
 check "all runs as rows" text models/pendulum.lag --until 1 --seconds $sweep --methods rk4 -o "$TMP/cost.csv" --sketch

@@ -179,6 +179,10 @@ let x = r*cos(phi), y = r*sin(phi)
 scene s { start r = 1, phi' = 1; span 1e-9 }
 END
 is "a distance that no spring holds has no link" 'ball body 0 | 1 0 - | - - - | - - - | - - - - "(x, y)"' "$(shapes polar.lag)"
+printf '%s\n' 'model bead; coord r [m], phi [rad]' "kinetic = 1 [kg]/2*(r'^2 + r^2*phi'^2)" 'scene s { start r = 2, phi = 30 [deg]; span 1e-9 [s] }' >bead.lag
+is "polar coordinates" 'ball body 0 | 1.732 1 - | - - - | - - - | - - - - "(r, phi)"' "$(shapes bead.lag)"
+printf '%s\n' 'model wheels; coord a [rad], b [rad]' "kinetic = 1 [kg*m^2]/2*(a'^2 + b'^2)" 'scene s { start a = 0.5, b = 1; span 1e-9 [s] }' >wheels.lag
+is "angles alone are wheels side by side" 'disc body 0 | 0 0 - | - - - | 1 - - | 0.5 - - - "a";disc body 0 | 2.5 0 - | - - - | 1 - - | 1 - - - "b"' "$(shapes wheels.lag | paste -s -d';' -)"
 
 # ---- lagc plot --drawing ----
 # Both rods of a double pendulum are as long in the picture as a metre of its axes; positions are written to 0.1 pixels.
@@ -191,6 +195,40 @@ picture "$OLDPWD/models/double_pendulum.lag" 3
 is "two balls at three times" 6 "$(grep -c '<circle' drawing.svg)"
 check "rods have their length" sh -c 'echo "$1" | awk -v m="$2" "{ d = \$1 - m; n++; if (d > 0.3 || d < -0.3) exit 1 } END { exit n != 6 }"' - "$(rods)" "$(metre)"
 check "well-formed" sh -c 'head -n 1 drawing.svg | grep -q "^<svg " && tail -n 1 drawing.svg | grep -qx "</svg>" && ! grep -q "<[^>]*<" drawing.svg'
+# Shapes in the plane, first and last points of their lines, from pixels back to metres by the labels 0 and 1 of both axes; damper: 0.35 and 0.55 of its length.
+cat >flat.lag <<'END'
+model flat; coord x [m], th [rad]
+kinetic = 1 [kg]/2*x'^2 + 1 [kg*m^2]/2*th'^2
+draw ground at -2
+draw wall from (0, -1) to (4, -1)
+draw damper from (0, 0) to (4, 0)
+draw disc at (1, 2) radius 0.5 turn th spokes 2
+draw box at (3, 2) size (1, 0.5) turn 90 [deg]
+draw path of (x, 1 [m])
+draw curve y = 3 [m] + 0*x for x in 2..4 [m]
+draw arrow (1 [kg]*x', 2 [kg]*x') at (2 [m], 1 [m]) scale 1 [s/kg]
+scene s { start x' = 1; span 1 }
+END
+lines() {
+  awk -F '"' '/^<text .*>[01]<.text>$/ { n = substr($0, index($0, ">") + 1, 1); if (/middle/) px[n] = $2; else py[n] = $4 - 5 } # text stands 5 pixels lower
+    / stroke-width="0.5"/ || !/^<path/ || /class/ { next }
+    { sub(/.* d="[ML]/, ""); sub(/Z?".*/, ""); n = split($0, at, /[L ]/); print metres(at[1], at[2]) " to " metres(at[n - 1], at[n]) }
+    function metres(x, y) { return sprintf("%.2f %.2f", (x - px[0])/(px[1] - px[0]) + 1e-6, (y - py[0])/(py[1] - py[0]) + 1e-6) }' drawing.svg
+}
+picture flat.lag 1
+lines >got
+while read -r name line; do check "$name: $line" grep -qxF -e "$line" got; done <<'END'
+wall 0.00 -1.00 to 4.00 -1.00
+damper 0.00 0.00 to 1.40 0.00
+rod 2.20 0.00 to 4.00 0.00
+spoke 1.00 2.00 to 1.50 2.00
+spoke 1.00 2.00 to 0.50 2.00
+box 3.25 1.50 to 2.75 1.50
+path 0.00 1.00 to 1.00 1.00
+curve 2.00 3.00 to 4.00 3.00
+END
+check "the ground" grep -q '^-[0-9.]* -2.00 to [0-9.]* -2.00$' got
+check "an arrow's tip begins its head" grep -q '^3.00 3.00 to ' got
 picture links.lag 1
 is "in space: a box of three faces, each on a white one" 6 "$(grep -c 'fill="#fff" fill-opacity\|fill="#0072b2" fill-opacity' drawing.svg)"
 

@@ -289,6 +289,9 @@ check "a record far behind the begin" late
 check "no data" refused 2 "needs the record and what to find" --fit k
 check "nothing to find" refused 2 "needs the record and what to find" --data "$M/damped.csv"
 check "a prior without numbers" refused 2 "write --prior 'k~normal(MEAN, DEVIATION)'" --data "$M/damped.csv" --fit k --prior 'k~normal'
+check "a prior without a name" refused 2 "write NAME~normal(MEAN, DEVIATION), with a NAME of --fit" --data "$M/damped.csv" --fit k --prior foo
+hours() { printf 't [h],x [m]\n0,0.1\n1,0.2\n' >"$TMP/hours.csv" && refused 2 'the time is "t .h.", that of .* is .*; write one unit' --data "$M/damped.csv,$TMP/hours.csv" --fit k; }
+check "records with other units of time" hours
 check "a prior and more" refused 2 "write --prior 'k~normal(MEAN, DEVIATION)'" --data "$M/damped.csv" --fit k --prior 'k~normal(1, 2)3'
 check "a prior that a sign excludes" refused 2 "the model declares k > 0, and the mean is -5" --data "$M/damped.csv" --fit k --prior 'k~normal(-5, 2)'
 cat >"$TMP/pole.lag" <<'X'

@@ -446,4 +446,19 @@ check "a telescope down a slope" in_time let_down go
 check "rests on its stops" close_to "$(final 'x\[4\]')" 0 1e-12
 check "its balance closes" close_to "$(number drift)" 0 1e-8 # the tolerance, ten times
 fi
+# ---- a disc in a journal of radius 0.1 that carries (3, -4): it turns by w^2/(2 mu r 5) until t = w/(mu r 5) = 5
+for size in 'hypot(lambda(px), lambda(py))' 'sqrt(lambda(px)^2 + lambda(py)^2)' 'sqrt(4*lambda(px)^2 + (2*lambda(py))^2)/2'; do
+  printf '%s\n' 'model pin; coord x, y, th' "lagrangian = (x'^2 + y'^2 + th'^2)/2 - 4*y" 'force x = 3' 'param mu = 0.2 >= 0, r = 0.1 > 0' 'constraint px: x = 0; constraint py: y = 0' "friction rub on th: mu*r*$size" "scene go { start th' = 0.5; span 6 }" >"$TMP/pin.lag"
+  check "a journal, by $size" run pin go
+  check "... stops after 1.25 rad" close_to "$(final th)" 1.25 1e-12
+done
+
+# ---- coefficients that depend on the place, outside of their range at the start
+begins() { # FRICTION: a bead on a rail at x = 2
+  printf '%s\n' 'model bead; coord x, y' "lagrangian = (x'^2 + y'^2)/2 - 9.81*y" 'constraint rail: y = 0' "friction rub on x: $1" "scene s { start x = 2, x' = 6; span 1 }" >"$TMP/bead.lag"
+  "$LAGC" run "$TMP/bead.lag"
+}
+check "a negative coefficient" says 2 'the friction rub.slip has a friction of -1, which must be at least 0' begins '(1 - x)*abs(lambda(rail))'
+check "a static one below that while it slips" says 2 'the friction rub.slip has a static friction of 0.1, which must be at least its friction while it slips, 0.3' begins '0.3*abs(lambda(rail)), static = (x - 1.9)*abs(lambda(rail))'
+
 tap_end

@@ -73,6 +73,7 @@ lagrangian = (x'^2 + y'^2 + z'^2)/2 + k/r
 END2
 integrable "Kepler in space: energy, one angular momentum, and their squares" "x y z"
 check "named" grep -q '"squares_of": \[2, 3, 4\]' "$TMP/out"
+check "... as text" says "in involution: Q1, Q2, Q2^2 + Q3^2 + Q4^2: 3 of 3: Liouville-integrable"
 integrable "or a component of the Runge-Lenz vector" "x y z" --degree 2
 is "which says that five are independent" 5 "$(sed -n 's/.*"independent": \([0-9]*\),.*/\1/p' "$TMP/out")"
 model <<'END2'

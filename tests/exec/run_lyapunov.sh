@@ -308,6 +308,8 @@ check "too many with constraints" refused 2 "from 1 to 2, the coordinates, veloc
 check "an event that accumulates" refused 3 "event floor repeats in ever shorter intervals" models/bouncing_ball.lag drop
 check "an event that stops" refused 3 "an event stopped the run at t = 50.88" models/henon_heiles.lag free
 check "too many" refused 2 "from 1 to 3" models/lorenz.lag --exponents 4
+echo "model fixed; coord x; lagrangian = x'^2/2; constraint c: x = 1; scene s { start x = 1; span 1 }" >"$TMP/fixed.lag"
+check "nothing moves" refused 2 "there are no neighbouring motions" "$TMP/fixed.lag"
 check "no time left" refused 2 "between 0 and 10 s" models/lorenz.lag --until 10 --transient 10
 check "backwards" refused 2 "write a later one" models/lorenz.lag --until -10
 libm() { "$LAGC" lyapunov models/double_pendulum.lag --until 20 --json --math "$1" | sed -n 's/.*"exponents": \[\([^]]*\)\].*/\1/p'; }

@@ -460,6 +460,7 @@ close "to the fourth power" "17/1728" "$(bends a4)" 1e-12
 printf "model slow\ncoord x\nkinetic = x'^2/2\npotential = x^2/2\nforce x = -x^2*x'\nscene s { start x = 0.1 }\n" >"$TMP/slow.lag"
 find_modes "$TMP/slow.lag" --amplitude
 close "friction that grows" "-1/8" "$(bends growth)" 1e-12
+check "as text" sh -c "'$LAGC' modes '$TMP/slow.lag' --amplitude | grep -qF \"no family of periodic motions: A' = -0.125 A^3\""
 "$LAGC" build models/double_pendulum.lag --with linear --method taylor -o "$TMP/compiled" && "$TMP/compiled" --modes --amplitude >"$TMP/compiled.txt"
 check "compiled C agrees" sh -c "'$LAGC' modes models/double_pendulum.lag --amplitude | tail -2 | grep -qxF -f '$TMP/compiled.txt'"
 check "no series" refuses 2 "needs a model without if, abs" $dir/root.lag --amplitude

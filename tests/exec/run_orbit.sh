@@ -269,4 +269,9 @@ refused "a start at rest" 3 "starts at rest, at an equilibrium" "$LAGC" orbit mo
 refused "friction, backwards" 3 "friction spoils that" "$LAGC" orbit models/pendulum.lag fading --reverse th=-th
 refused "no word for rest" 2 "or \`rest\`" "$LAGC" orbit models/pendulum.lag wide --reverse th
 refused "a time before the start" 2 "a time after 0 s" "$LAGC" orbit models/pendulum.lag wide --until -3
+# x'' = 1 has no periodic motion: the search says how far it came, and what to try.
+echo "model push; coord x; lagrangian = x'^2/2; force x = 1; scene s { start x = 0.5; span 20 }" >"$TMP/push.lag"
+check "where there is none" says 3 'no periodic motion found near the start of scene s: after ' "$LAGC" orbit "$TMP/push.lag" --guess 3
+none() { "$LAGC" orbit "$TMP/push.lag" --guess 3 --json 2>/dev/null | grep -q '"status": "no periodic motion", .*"residuals": \[1, 0\.'; }
+check "... as JSON, with the course of the search" none
 tap_end

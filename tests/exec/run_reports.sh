@@ -111,6 +111,11 @@ for method in rk45 ${SLOW:+dop853 rk4} verlet ${SLOW:+radau}; do
 done
 check "and is warned of" says 0 '' "$LAGC" check "$TMP/plane.lag"
 check "at the place" grep -q "plane.lag:5:[0-9]*: warning: a force jumps where .hypot(x', y'). is 0; a motion that sticks there" "$TMP/err"
+# Branches with roots of what they exclude, which no run holds: x'' = -(1 + sqrt(x')) comes to rest at 2 (2 - log 3) = 1.80277 s, to a step.
+echo "model grip; coord x; lagrangian = x'^2/2; force x = if(x' > 0, -1 - sqrt(x'), 1 + sqrt(-x')); scene s { start x' = 4; span 10 }" >"$TMP/grip.lag"
+for method in dop853 verlet 'rk4(step=0.01)' 'rk4(step=0.0372)'; do
+  check "a branch that nothing holds, by $method" ends 3 "FAILED: at t = 1\.8[012][0-9]* s: the motion gets stuck (it stays where x' is 0: .* pulls back from both sides" "$TMP/grip.lag" --method "$method"
+done
 # x'' = -x - 0.1 sign(x') from x = 2: each half swing loses 0.2, and at its end the spring is stronger than friction
 cat >"$TMP/swings.lag" <<'X'
 model swings

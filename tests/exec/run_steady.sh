@@ -302,5 +302,10 @@ scene s { start x1 = 1, x2 = 3; span 1 }
 END
 check "a singular configuration" refuses 3 "the constraints are dependent, or nearly, at the equilibrium and independent beside it" "$TMP/flat.lag"
 check "not for runs" sh -c "'$LAGC' run models/bicycle.lag --steady 2>&1 | grep -q 'is an option of .lagc modes'"
+# x'' = 1 neither rests nor runs steadily, on a rail or without
+echo "model tube; coord x, y; constraint rail: y = 0; lagrangian = (x'^2 + y'^2)/2; force x = 1; scene s { start x = 1; span 1 }" >"$TMP/tube.lag"
+check "no rest on a rail" says 3 'no equilibrium found near the start of scene s: start near one: name=VALUE; for a motion' "$LAGC" modes "$TMP/tube.lag"
+check "... and no steady motion" says 3 'no steady motion found near the start of scene s: one along whose path' "$LAGC" modes "$TMP/tube.lag" --steady
+is "... as JSON" '"no equilibrium"}' "$("$LAGC" modes "$TMP/tube.lag" --json 2>/dev/null | sed 's/.*"status": //')"
 check "a steady motion is printed with its rates" sh -c "'$TMP/bicycle' --modes --steady | grep -q \"moving with x' 5 m/s, rear' -16.6667 rad/s, front' -14.2857 rad/s\""
 tap_end

@@ -541,6 +541,15 @@ check "a start of one size alone" no "with N=2: x[3]: no such parameter" "$TMP/c
 check "a start of a rotation" no "cannot vary: write a \`param\` into it" models/free_body.lag 'omega(R).x=1,2'
 check "an empty place in a list" no "w=1,,2: a list is numbers and commas" "$osc" w=1,,2
 check "a range and a value of one name" no "w=1: w varies; leave one out" "$osc" w=1 w=2,3
+while IFS='|' read -r words of; do
+  # shellcheck disable=SC2086 # a list of words
+  check "refused: $of" says 2 "$words" "$LAGC" sweep models/pendulum.lag $of
+done <<END
+1e+13 runs are more than 1e+12: take fewer values|l=0.5..1:1000001 g=1..2:10000001 -o $TMP/no.csv
+l has a distribution: write the number of samples|l~normal(1,0.1)
+--shard 5/4: part i of n|l=0.5..1:3 --shard 5/4 -o $TMP/no.csv
+a map of more than 262144 cells is too large|l=0.5..1:2001 g=1..2:2001 --svg $TMP/no.svg
+END
 check "a range of a member, and then of all" says 2 "write k first" "$LAGC" sweep "$TMP/pair.lag" 'k[1]=1,2' k=3,4 -o "$TMP/no.csv"
 check "all, and then a member" sweep "$TMP/pair.lag" k=3,4 'k[1]=1,2' -o "$TMP/all.csv"
 check "a range wider than numbers" no "wider than the largest number" "$osc" F=-1e308..1e308:3

@@ -136,4 +136,5 @@ exec $CC "\$@"
 END
 chmod +x "$TMP/cc_without"
 check "a compiler without OpenMP" says 2 "--threads needs OpenMP, which the C compiler \`$TMP/cc_without\` does not have" env CC="$TMP/cc_without" "$LAGC" run "$TMP/below.lag" --threads 2
+check "no thread at all" says 2 '--threads 0: write a number from 1 to 1024' "$LAGC" run models/pendulum.lag --threads 0
 tap_end

@@ -75,6 +75,17 @@ near "of a Hamiltonian over its momentum" 1e-8 1 "$(areas "$TMP/h.lag" --cloud 8
 check "a quantity that cannot be displaced" says 2 "give two by --x and --y" "$LAGC" plot models/kepler.lag --cloud 20 --x x --y energy -o "$TMP/no.svg"
 check "two coordinates, and none named" says 2 "one coordinate" "$LAGC" plot models/kepler.lag --cloud 20 -o "$TMP/no.svg"
 check "too few starts" says 2 "from 8 to" "$LAGC" plot models/pendulum.lag --cloud 3 -o "$TMP/no.svg"
+while IFS='|' read -r words of; do
+  # shellcheck disable=SC2086 # a list of words
+  check "--cloud $of" says 2 "$words" "$LAGC" plot models/pendulum.lag -o "$TMP/no.svg" --cloud $of
+done <<'END'
+"x" is not a number; write for example --cloud 60|x
+after the colon stands the size of the cloud|20:0
+the time between two clouds must be positive|20 --every -1
+--every 0.001: that makes 20001 clouds; 100 can be told apart at most|20 --every 0.001
+two scenes are named, small and wide; a cloud is around the start of one|20 small wide
+th does not change along the motion, which gives the cloud its size|20 th=0 th'=0
+END
 check "a cloud and a section" says 2 "leave one of them out" "$LAGC" plot models/pendulum.lag --cloud 30 --section "th rising" -o "$TMP/no.svg"
 check "--phase" says 2 "leave out --phase" "$LAGC" plot models/pendulum.lag --cloud 30 --phase th -o "$TMP/no.svg"
 tap_end
