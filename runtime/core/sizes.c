@@ -111,15 +111,18 @@ static int same_unit(const lag_var *var, int i, int k) {
   return var[i].unit == var[k].unit || strcmp(var[i].unit, var[k].unit) == 0;
 }
 
-/* The first variable with the unit of variable i. */
+/* The first variable with the unit of variable i. Units stand in rows: texts are compared once a row. */
 static int first_of_unit(const lag_var *var, int i) {
   int k = 0;
-  while (!same_unit(var, k, i)) k++;
+  while (!same_unit(var, k, i))
+    for (const char *other = var[k].unit; var[k].unit == other;) k++;
   return k;
 }
 
 /* Whether coordinate i is the first of its unit. */
-static int is_first(const lag_model *m, int i) { return first_of_unit(m->q, i) == i; }
+static int is_first(const lag_model *m, int i) {
+  return (i == 0 || !same_unit(m->q, i, i - 1)) && first_of_unit(m->q, i) == i;
+}
 
 /* The velocity of all coordinates with the unit of coordinate i at which they have this kinetic energy; HUGE_VAL:
  * there is none. */

@@ -156,10 +156,8 @@ static inline int lag_contact_row(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t,
   lag_sparse_rows *const A = &w->all.A, *const D = &w->all.D;
   int e = (int)A->first[r], f = (int)D->first[r], status = 0;
   for (int j = (int)w->first[k]; j < (int)w->first[k + 1]; j++) {
-    const LAG_REAL value = w->jacobian[(int)w->entry[j]];
-    if (!(value < LAG_C(0.0) || value > LAG_C(0.0))) continue;
     A->col[e] = (LAG_REAL)w->jacobian_at[(int)w->entry[j]].col;
-    A->value[e++] = value;
+    A->value[e++] = w->jacobian[(int)w->entry[j]];
   }
   A->first[r + 1] = (LAG_REAL)e;
   const int alone = !lag_contact_is_bound(w, i) && w->band == 0 && w->loads == 0; /* M is diagonal */
@@ -221,6 +219,18 @@ static inline void lag_contact_static(const lag_moreau_contacts *w, lag_pressing
   if (slip <= LAG_C(1e-9)*(pace + slow*hold*P) || (held && slip <= two*pace)) c->slack = slip/slow;
 }
 
+/* Columns that all rows of A and D have from row on, a contact's; 0: they differ, or D is to change. */
+static inline int lag_contact_columns(const lag_moreau_contacts *w, int row) {
+  const lag_sparse_rows *const A = &w->all.A, *const D = &w->all.D;
+  const int a = (int)A->first[row], d = (int)D->first[row], n = (int)A->first[row + 1] - a;
+  int same = w->loads == 0 && n > 0;
+  for (int r = row; r < w->rows; r++)
+    same = same && (int)A->first[r + 1] - (int)A->first[r] == n && (int)D->first[r + 1] - (int)D->first[r] == n;
+  for (int e = 0; same && e < (w->rows - row)*n; e++)
+    same = (int)A->col[a + e] == (int)A->col[a + e % n] && (int)D->col[d + e] == (int)A->col[a + e % n];
+  return same ? n : 0;
+}
+
 /* Appends contact i with its rows and its law. */
 static inline int lag_contact_add(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t, LAG_REAL h, const LAG_REAL *y, int i) {
   const LAG_REAL zero = LAG_C(0.0);
@@ -233,6 +243,7 @@ static inline int lag_contact_add(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t,
   c->row = (LAG_REAL)row;
   c->tangents = (LAG_REAL)tangents;
   for (int j = 0; j <= tangents; j++) LAG_TRY(lag_contact_row(LAG_THE_MODEL, w, t, y, i + j));
+  c->shared = (LAG_REAL)lag_contact_columns(w, row);
   const int moves = w->response[row] > zero, strikes = lag_contact_strikes(w->r0[k], w->pace[k]) && moves;
   if (strikes) LAG_TRY(lag_contact_bounce(LAG_THE_MODEL, w, t, y, i, &e));
   w->impacts += strikes;
@@ -336,6 +347,7 @@ static inline int lag_contacts_solve(lag_moreau_contacts *w, LAG_REAL *v) {
   for (int e = 0; e < (int)A->first[w->rows]; e++)
     size = lag_larger(size, LAG_FN(fabs)(A->value[e]*v[(int)A->col[e]]));
   w->all.v = v;
+  w->all.v_was = w->d, w->all.nv = w->nq;
   w->all.loose = w->loose*size;
   const LAG_REAL enough = LAG_C(64.0)*w->epsilon*size;
   const int sweeps = lag_contact_impulses(&w->all, enough, MOST);

@@ -1,289 +1,20 @@
-/* impulses.h: laws of contacts and dry friction by projected Gauss-Seidel. Includes scalar.h.
+/* impulses.h: impulses of contacts with friction by projected Gauss-Seidel. Includes scalar.h.
  *
  * Enters: velocities without contacts and friction, response of the motion to each; their laws. Leaves: impulses and
  * velocities that obey all laws, for any number of contacts: the problem of numeric/complementarity.h with boxes of
  * friction that depend on the forces which press. Each law in turn, until a sweep changes nothing noticeably: M. Jean,
- * Comput. Methods Appl. Mech. Eng. 177 (1999) 235, DOI 10.1016/S0045-7825(98)00383-1. Gap and friction of a contact
- * are found at once where each moves the other by much; impulses that drift go in strides; those that swing are damped.
+ * Comput. Methods Appl. Mech. Eng. 177 (1999) 235, DOI 10.1016/S0045-7825(98)00383-1. Those of many contacts go on by
+ * momentum; impulses that drift go in strides; those that swing are damped.
  *
- * lagc copies the sections below into headers, with their prefix for LAG_ and lag_. LAG_REAL is a scalar. Memory is
+ * lagc copies the section below into headers, with their prefix for LAG_ and lag_. LAG_REAL is a scalar. Memory is
  * the caller's; nothing is kept between calls. */
 #ifndef LAG_IMPULSES_H
 #define LAG_IMPULSES_H
 
 #include "kernels/band_matrix.h"
-#include "kernels/coulomb.h"
+#include "kernels/contact_turn.h"
 
 /* ---- impulses ---- */
-
-/* Rows of a sparse matrix: row r has the entries first[r] .. first[r + 1] - 1. Indices are scalars, since
- * they lie in blocks of scalars. */
-typedef struct lag_sparse_rows {
-  LAG_REAL *first, *col, *value;
-} lag_sparse_rows;
-
-/* A contact: rows row (the gap) and row + 1 .. row + tangents (slip velocities). mu, hold: friction that
- * slips, and the most that holds, by the force of the gap; slack: what it may be more, where the contact rests at the
- * begin, else -1. least: the least rate of the gap after the impulse. Friction drives the slip velocity to the nearest
- * point of a ball (an interval in a plane), about centre[tangents], of this radius. strikes: 1 in an impact; rate,
- * slip[tangents]: at the begin, by directions at the middle; turn, tail[tangents]: change of the slip by theirs until
- * there, and on to the end.
- * opposite: the contact on the other side of the same rail, or -1; head, next: of chains by first column;
- * couple: response of the gap to friction. */
-typedef struct lag_pressing {
-  LAG_REAL contact, row, tangents, mu, hold, slack, least, radius, centre[2], strikes, rate, slip[2], turn[2], tail[2];
-  LAG_REAL opposite, head, next, couple[2];
-} lag_pressing;
-
-/* The product of row r with x. */
-static inline LAG_REAL lag_row_product(const lag_sparse_rows *A, int r, const LAG_REAL *x) {
-  LAG_REAL sum = LAG_C(0.0);
-  for (int e = (int)A->first[r]; e < (int)A->first[r + 1]; e++) sum += A->value[e]*x[(int)A->col[e]];
-  return sum;
-}
-
-/* --- laws --- */
-
-/* Whether a contact takes part in a step h: its gap is closed at the middle, or may close until the end. r0,
- * r1: rates at the begin, and at the end without contacts; pace: rates that forces and curvature cause in a
- * step. */
-static inline int lag_contact_takes_part(LAG_REAL gap, LAG_REAL r0, LAG_REAL r1, LAG_REAL pace, LAG_REAL h) {
-  const LAG_REAL zero = LAG_C(0.0);
-  return gap <= zero || (gap + h/LAG_C(2.0)*(lag_smaller(r0, r1) - pace) <= zero && r0 >= -pace);
-}
-
-/* Whether it strikes: the gap closes faster than forces and curvature alone make it close in a step. */
-static inline int lag_contact_strikes(LAG_REAL r0, LAG_REAL pace) { return r0 < -pace; }
-
-/* Fills in c->least, centre and radius from the others. bend: change of the rate of the gap by its curvature until the
- * middle; e: restitution of an impact, 0 where there is none; back: the same along the surface.
- *
- * Half a gap is left by its rate -gap/h, and the next middle has none. On a curve that bends towards the body
- * the rate is that which curvature takes away until the end; the middle lies inside by h/4 of it, and a body
- * deeper than that is led out, no faster than the gap closed. */
-static inline void lag_contact_law(lag_pressing *c, LAG_REAL gap, LAG_REAL bend, LAG_REAL h, LAG_REAL e,
-                                   LAG_REAL back) {
-  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), two = LAG_C(2.0), r0 = c->rate;
-  const int strikes = c->strikes > zero;
-  const LAG_REAL down = lag_smaller(bend, zero), part = LAG_SELECT(strikes, back, (one + back)/two);
-  const LAG_REAL left = gap - down*(h/LAG_C(4.0));
-  LAG_REAL size = zero;
-  c->least = LAG_SELECT(left > zero || down < zero, -down - left/h, zero);
-  if (r0 > zero || down < zero) c->least = lag_smaller(-r0, c->least);
-  if (strikes) c->least = lag_larger(-down, -lag_smaller(lag_larger(e, zero), one)*r0);
-  for (int j = 0; j < (int)c->tangents; j++) {
-    const LAG_REAL slip = c->slip[j] - c->turn[j];
-    c->centre[j] = -part*slip - c->tail[j];
-    size = lag_length_of(size, slip);
-  }
-  c->radius = LAG_SELECT(strikes, zero, (one - back)/two*size);
-}
-
-/* --- sweeps --- */
-
-/* Changes impulse r by dP. */
-static inline void lag_add_impulse(const lag_sparse_rows *D, int r, LAG_REAL dP, LAG_REAL *P, LAG_REAL *v) {
-  P[r] += dP;
-  for (int e = (int)D->first[r]; e < (int)D->first[r + 1]; e++) v[(int)D->col[e]] += dP*D->value[e];
-}
-
-/* Contacts of[n] of a step. A, D: one row each for each impulse, D = M^-1 A^T; response[rows]: the diagonal of
- * A D, 0: no impulse moves this row; b[rows]: rate without velocities. P[rows], v[]: impulses, velocities. */
-typedef struct lag_impulses {
-  int n;
-  lag_pressing *of;
-  lag_sparse_rows A, D;
-  const LAG_REAL *response, *b;
-  LAG_REAL *P, *v;
-  LAG_REAL *was, *went; /* [rows] impulses some sweeps ago, and their changes until then */
-  LAG_REAL loose;       /* change of a rate in a sweep that is enough after many sweeps; 0: none */
-} lag_impulses;
-
-static inline LAG_REAL lag_rate_of(const lag_impulses *s, int r) { return lag_row_product(&s->A, r, s->v) + s->b[r]; }
-
-static inline int lag_rows_are_opposite(const lag_sparse_rows *A, int a, int b) {
-  const LAG_REAL rounding = LAG_C(1e-12);
-  int i = (int)A->first[a], j = (int)A->first[b], same = (int)A->first[a + 1] - i == (int)A->first[b + 1] - j;
-  for (; same && i < (int)A->first[a + 1]; i++, j++)
-    same = (int)A->col[i] == (int)A->col[j] &&
-           LAG_FN(fabs)(A->value[i] + A->value[j]) <= rounding*LAG_FN(fabs)(A->value[i]);
-  return same;
-}
-
-/* Finds the pairs on both sides of a rail. Nothing determines by how much both press: the guess is the least. */
-static inline void lag_find_opposites(const lag_impulses *s) {
-  const LAG_REAL none = LAG_C(-1.0);
-  for (int i = 0; i < s->n; i++) s->of[i].opposite = s->of[i].head = none;
-  for (int i = 0; i < s->n; i++) {
-    const int row = (int)s->of[i].row, first = (int)s->A.first[row];
-    if (first == (int)s->A.first[row + 1]) continue;
-    lag_pressing *const chain = &s->of[(int)s->A.col[first] % s->n];
-    for (int j = (int)chain->head; j >= 0; j = (int)s->of[j].next) {
-      const int other = (int)s->of[j].row;
-      const LAG_REAL both = lag_smaller(s->P[row], s->P[other]);
-      if (!lag_rows_are_opposite(&s->A, row, other)) continue;
-      s->of[i].opposite = (LAG_REAL)j;
-      s->of[j].opposite = (LAG_REAL)i;
-      s->P[row] -= both;
-      s->P[other] -= both;
-    }
-    s->of[i].next = chain->head;
-    chain->head = (LAG_REAL)i;
-  }
-}
-
-/* c->couple := responses of its gap to its friction. */
-static inline void lag_find_coupling(const lag_impulses *s, lag_pressing *c) {
-  const int r = (int)c->row;
-  for (int k = 0; k < (int)c->tangents; k++) {
-    c->couple[k] = LAG_C(0.0);
-    for (int d = (int)s->D.first[r + 1 + k]; d < (int)s->D.first[r + 2 + k]; d++)
-      for (int e = (int)s->A.first[r]; e < (int)s->A.first[r + 1]; e++)
-        if ((int)s->A.col[e] == (int)s->D.col[d]) c->couple[k] += s->A.value[e]*s->D.value[d];
-  }
-}
-
-/* Changes the impulse of the gap of c by dP, and first that on the other side of its rail. */
-static inline void lag_press(const lag_impulses *s, const lag_pressing *c, LAG_REAL dP) {
-  const int other = c->opposite < LAG_C(0.0) ? -1 : (int)s->of[(int)c->opposite].row;
-  LAG_REAL less = LAG_C(0.0);
-  if (other >= 0 && dP > less) less = lag_smaller(dP, s->P[other]);
-  if (less > LAG_C(0.0)) lag_add_impulse(&s->D, other, -less, s->P, s->v);
-  lag_add_impulse(&s->D, (int)c->row, dP - less, s->P, s->v);
-}
-
-/* Most friction that holds c under the impulse P of its gap; turned: the slip turns round in the step. */
-static inline LAG_REAL lag_contact_grip(const lag_pressing *c, LAG_REAL P, int turned) {
-  const int rests = c->slack >= LAG_C(0.0);
-  return (rests || turned ? c->hold : c->mu)*P + (rests ? c->slack : LAG_C(0.0));
-}
-
-/* Coulomb's law of c under the impulse P of its gap; slow: response of its slip. */
-static inline lag_coulomb lag_contact_coulomb(const lag_pressing *c, LAG_REAL slow, LAG_REAL P) {
-  const lag_coulomb law = {(int)c->tangents, slow, c->radius, lag_contact_grip(c, P, 0), lag_contact_grip(c, P, 1),
-                           (LAG_REAL)HUGE_VAL, c->centre, c->slip};
-  return law;
-}
-
-/* A contact alone, while the others keep theirs: its impulse, friction x, rates under them. slow: response of a slip to
- * friction, the trace, which is no less than the largest eigenvalue, and the same in all directions. */
-typedef struct lag_contact_alone {
-  const lag_pressing *of;
-  LAG_REAL response, slow, impulse, rate, slip[2], x[2];
-} lag_contact_alone;
-
-/* x := friction where the impulse of the gap is P. Returns the rate of the gap. */
-static inline LAG_REAL lag_contact_rate(const lag_contact_alone *a, LAG_REAL P, LAG_REAL *x) {
-  const lag_pressing *const c = a->of;
-  const lag_coulomb law = lag_contact_coulomb(c, a->slow, P);
-  LAG_REAL slip[2], rate = a->rate + a->response*(P - a->impulse);
-  for (int k = 0; k < law.n; k++) {
-    slip[k] = a->slip[k] + c->couple[k]*(P - a->impulse);
-    x[k] = a->x[k];
-  }
-  if (a->slow > LAG_C(0.0)) lag_friction_turn(&law, slip, x);
-  for (int k = 0; k < law.n; k++) rate += c->couple[k]*(x[k] - a->x[k]);
-  return rate;
-}
-
-/* The impulse of the gap at which its rate is the least one, with friction by its law; of several, as of wedged bodies,
- * the nearest to the present one. Strides that double, then regula falsi with the Illinois rule (M. Dowell, P. Jarratt,
- * BIT 11 (1971) 168, DOI 10.1007/BF01934364). */
-static inline LAG_REAL lag_contact_balance(const lag_contact_alone *a) {
-  const LAG_REAL zero = LAG_C(0.0), two = LAG_C(2.0), least = a->of->least;
-  LAG_REAL x[2], last = a->impulse, P = last, at = lag_contact_rate(a, P, x) - least, at_last = at;
-  LAG_REAL stride = -at/a->response;
-  while ((at < zero) == (at_last < zero) && (at < zero || (at > zero && P > zero))) {
-    last = P, at_last = at;
-    P = lag_larger(zero, P + stride);
-    at = lag_contact_rate(a, P, x) - least;
-    stride *= two;
-    if (!lag_is_number(P)) return a->impulse;
-  }
-  if ((at < zero) == (at_last < zero) || !(at < zero || at > zero)) return P;
-  for (int turn = 0; turn < 100; turn++) {
-    const LAG_REAL to = P - at*((P - last)/(at - at_last)), at_to = lag_contact_rate(a, to, x) - least;
-    if (!(to < P || to > P) || !(at_to < zero || at_to > zero)) return to;
-    if ((at_to < zero) == (at < zero)) at_last /= two;
-    else last = P, at_last = at;
-    P = to, at = at_to;
-  }
-  return P;
-}
-
-/* Changes friction of contact c by this part towards x; returns the largest change of a rate without damping. */
-static inline LAG_REAL lag_contact_rub(const lag_impulses *s, const lag_pressing *c, const LAG_REAL *x, LAG_REAL w,
-                                        LAG_REAL part) {
-  const int r = (int)c->row + 1;
-  LAG_REAL change = LAG_C(0.0);
-  for (int k = 0; k < (int)c->tangents; k++) {
-    const LAG_REAL by = x[k] - s->P[r + k];
-    change = lag_larger(change, LAG_FN(fabs)(by)*w);
-    lag_add_impulse(&s->D, r + k, part*by, s->P, s->v);
-  }
-  return change;
-}
-
-/* Part of each change that a sweep makes: contacts whose friction loads each other swing for ever by whole ones. */
-static inline LAG_REAL lag_contact_damping(int sweep) {
-  return sweep < 500 ? LAG_C(1.0) : sweep < 3000 ? LAG_C(0.5) : sweep < 20000 ? LAG_C(0.2) : LAG_C(0.05);
-}
-
-/* One turn of a contact in a plane whose friction moves the gap by little; returns the largest change of a rate. */
-static inline LAG_REAL lag_contact_turn_flat(const lag_impulses *s, const lag_pressing *c, LAG_REAL part) {
-  const LAG_REAL zero = LAG_C(0.0);
-  const int r = (int)c->row;
-  const LAG_REAL response = s->response[r], slow = s->response[r + 1];
-  LAG_REAL change = zero;
-  if (response > zero) {
-    const LAG_REAL by = lag_larger(zero, s->P[r] + (c->least - lag_rate_of(s, r))/response) - s->P[r];
-    change = LAG_FN(fabs)(by)*response;
-    if (!(change <= zero)) lag_press(s, c, part*by);
-  }
-  if (!(slow > zero)) return change;
-  const LAG_REAL slip = lag_rate_of(s, r + 1), was = s->P[r + 1];
-  const LAG_REAL free = slip - slow*was;
-  LAG_REAL to = free;
-  lag_into_ball(1, c->centre, c->radius, &to);
-  LAG_REAL x = was + (to - slip)/slow;
-  const LAG_REAL most = lag_contact_grip(c, s->P[r], (to - free)*c->slip[0] > zero);
-  if (LAG_FN(fabs)(x) > most) x = lag_smaller(lag_larger(x, -most), most);
-  lag_add_impulse(&s->D, r + 1, part*(x - was), s->P, s->v);
-  return lag_larger(change, LAG_FN(fabs)(x - was)*slow);
-}
-
-/* One turn of any contact. Along the gap and across in turn, or both at once where
- * friction moves the gap by more than half of its own response, as in a brake that locks itself. */
-static inline LAG_REAL lag_contact_turn(const lag_impulses *s, const lag_pressing *c, LAG_REAL part) {
-  const LAG_REAL zero = LAG_C(0.0), two = LAG_C(2.0);
-  const int r = (int)c->row, n = (int)c->tangents;
-  if (n == 1 && !(two*c->mu*LAG_FN(fabs)(c->couple[0]) > s->response[r]))
-    return lag_contact_turn_flat(s, c, part);
-  lag_contact_alone a = {c, s->response[r], zero, s->P[r], zero, {zero, zero}, {zero, zero}};
-  LAG_REAL change = zero, x[2] = {zero, zero}, couple = zero, to = s->P[r];
-  for (int k = 0; k < n; k++) {
-    a.slow += s->response[r + 1 + k];
-    a.x[k] = s->P[r + 1 + k];
-    couple = lag_length_of(couple, c->couple[k]);
-  }
-  if (a.response > zero) {
-    const int at_once = two*c->mu*couple > a.response && a.slow > zero;
-    a.rate = lag_rate_of(s, r);
-    for (int k = 0; k < n && at_once; k++) a.slip[k] = lag_rate_of(s, r + 1 + k);
-    to = lag_larger(zero, s->P[r] + (c->least - a.rate)/a.response);
-    if (at_once) to = lag_contact_balance(&a);
-    change = LAG_FN(fabs)(to - s->P[r])*a.response;
-    lag_press(s, c, part*(to - s->P[r]));
-  }
-  if (!(a.slow > zero)) return change;
-  for (int k = 0; k < n; k++) {
-    a.slip[k] = lag_rate_of(s, r + 1 + k);
-    x[k] = a.x[k];
-  }
-  const lag_coulomb law = lag_contact_coulomb(c, a.slow, s->P[r]);
-  lag_friction_turn(&law, a.slip, x);
-  return lag_larger(change, lag_contact_rub(s, c, x, a.slow, part));
-}
 
 /* Whether friction of size rub holds: it is another than that of a contact that slips. */
 static inline int lag_contact_holds(const lag_pressing *c, LAG_REAL P, LAG_REAL rub, LAG_REAL epsilon) {
@@ -355,22 +86,29 @@ static inline LAG_REAL lag_contact_stride(const lag_impulses *s, LAG_REAL stride
   return goes_on ? LAG_C(2.0)*stride : one;
 }
 
-/* Impulses of many contacts after two sweeps: conjugate directions, which begin anew where changes grow.
- * *before: square of the last change. M. Silcowitz-Hansen, S. Niebe, K. Erleben, Vis. Comput. 26 (2010) 893, DOI
- * 10.1007/s00371-010-0502-6. */
-static inline void lag_contact_conjugate(const lag_impulses *s, LAG_REAL *before) {
-  const LAG_REAL zero = LAG_C(0.0);
-  const int rows = (int)(s->of[s->n - 1].row + s->of[s->n - 1].tangents) + 1;
-  LAG_REAL now = zero;
-  for (int r = 0; r < rows; r++) now += (s->P[r] - s->was[r])*(s->P[r] - s->was[r]);
-  const LAG_REAL part = LAG_SELECT(now < *before, now/(*before), zero);
+/* Impulses of many contacts after two sweeps: on by a part of their change, the more the longer they go on in one
+ * direction; velocities are linear in them. *turns: since the last change of direction. H. Mazhar, T. Heyn, D. Negrut,
+ * A. Tasora, ACM Trans. Graph. 34 (2015) 32, DOI 10.1145/2735627; B. O'Donoghue, E. Candes, Found. Comput. Math. 15
+ * (2015) 715, DOI 10.1007/s10208-013-9150-3. The parts, 0.8 in a few turns and almost 1 in some hundred, take the
+ * fewest sweeps in piles of discs. */
+static inline void lag_contact_momentum(const lag_impulses *s, LAG_REAL *turns) {
+  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0);
+  const int rows = (int)(s->of[s->n - 1].row + s->of[s->n - 1].tangents) + 1, dense = s->D.first[rows] > s->nv;
+  LAG_REAL back = zero;
+  for (int r = 0; r < rows; r++) back += (s->was[r] + s->went[r] - s->P[r])*(s->P[r] - s->was[r]);
+  const LAG_REAL k = *turns = LAG_SELECT(back > zero, zero, *turns + one);
+  const LAG_REAL part = k/(k + one)*(LAG_C(0.8) + LAG_C(0.2)*k/(k + LAG_C(100.0)));
   for (int r = 0; r < rows; r++) {
-    const LAG_REAL by = part*s->went[r];
-    s->went[r] = by + (s->P[r] - s->was[r]);
-    lag_add_impulse(&s->D, r, by, s->P, s->v);
+    s->went[r] = part*(s->P[r] - s->was[r]);
     s->was[r] = s->P[r];
+    if (dense) s->P[r] += s->went[r];
+    else lag_add_impulse(&s->D, r, s->went[r], s->P, s->v);
   }
-  *before = now;
+  for (int i = 0; i < s->nv && dense; i++) {
+    const LAG_REAL by = part*(s->v[i] - s->v_was[i]);
+    s->v_was[i] = s->v[i];
+    s->v[i] += by;
+  }
 }
 
 /* Few planar contacts: responses W of all rates to all impulses; impulses and rates, and those of the sweeps; how each
@@ -542,7 +280,7 @@ static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, i
   enum { MANY = 32, SOME = 20, QUICK = 3000 };
   const LAG_REAL zero = LAG_C(0.0);
   /* change 1000 sweeps ago: rows that depend on others agree to their own rounding only */
-  LAG_REAL before = enough*LAG_C(1e8), stride = LAG_C(1.0), square = zero;
+  LAG_REAL before = enough*LAG_C(1e8), stride = LAG_C(1.0), turns = zero;
   lag_find_opposites(s);
   for (int i = 0; i < s->n; i++) lag_find_coupling(s, &s->of[i]);
   for (int i = 0; i < s->n; i++)
@@ -552,10 +290,11 @@ static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, i
       lag_add_impulse(&s->D, k, guess, s->P, s->v);
       if (s->n > MANY) s->was[k] = guess;
     }
+  for (int i = 0; i < s->nv && s->n > MANY; i++) s->v_was[i] = s->v[i];
   for (int sweep = 1; sweep <= most; sweep++) {
     LAG_REAL change = zero;
-    const int conjugate = s->n > MANY && sweep <= QUICK;
-    const LAG_REAL part = conjugate ? LAG_C(1.0) : lag_contact_damping(sweep);
+    const int goes_on = s->n > MANY && sweep <= QUICK;
+    const LAG_REAL part = goes_on ? LAG_C(1.0) : lag_contact_damping(sweep);
     int softer = 0;
     for (int i = 0; i < s->n; i++) {
       const LAG_REAL one = lag_contact_turn(s, &s->of[sweep % 2 ? i : s->n - 1 - i], part);
@@ -568,8 +307,8 @@ static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, i
     if (sweep % 1000 == 0 && change <= lag_contact_swing(s->n, sweep)*enough && change >= LAG_C(0.9)*before)
       return sweep;
     if (sweep % 1000 == 0) before = change;
-    if (conjugate && sweep % 2 == 0) lag_contact_conjugate(s, &square);
-    if (!conjugate && sweep % 32 == 0 && sweep > 200) stride = lag_contact_stride(s, stride);
+    if (goes_on && sweep % 2 == 0) lag_contact_momentum(s, &turns);
+    if (!goes_on && sweep % 32 == 0 && sweep > 200) stride = lag_contact_stride(s, stride);
   }
   return most + 1;
 }

@@ -74,7 +74,7 @@ static void write_contacts(const Header *h, const char *text) {
 
 static void define_contacts(const Header *h) {
   const ProgramSet *u = h->u;
-  header_sections(h, "friction, mean, band_matrix, impulses");
+  header_sections(h, "friction, mean, band_matrix, contact_turns, impulses");
   header_internal_function(h, u->constraints.matrices, "contact_matrices", NULL, "LAG_REAL *A, LAG_REAL *M", NULL);
   if (u->contact_coefficients)
     header_internal_function(h, u->contact_coefficients, "contact_coefficients", NULL, "LAG_REAL *law", NULL);

@@ -309,7 +309,7 @@ static void begin_sweeps(Sweeps *s, int n, uint64_t *seed) {
 
 static int sweep(Sweeps *s, int contacts, lag_pressing *of) {
   const lag_sparse_rows rows = {s->first, s->col, s->A};
-  const lag_impulses impulses = {contacts, of, rows, rows, s->response, s->b, s->P, s->v, s->was, s->went, 0};
+  const lag_impulses impulses = {contacts, of, rows, rows, s->response, s->b, s->P, s->v, s->was, s->went, 0, 0, NULL};
   return lag_contact_impulses(&impulses, 1e-14, 100000) <= 100000;
 }
 
