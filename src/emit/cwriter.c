@@ -131,14 +131,14 @@ CExpr cwriter_spell(Writer *w, const Ins *i) {
 
 /* --- statements --- */
 
-/* Columns of the text in lines that are filled: indices from 100 on, as of x_2151 = q[2150], count as four digits, so
- * that lines break in the same places whatever the size of a family is (late_text.h). */
+/* Columns of the text in lines that are filled: indices from 100 on, as of x_2151 = q[2150] or D2151, count as four
+ * digits, so that lines break in the same places whatever the size of a family is (late_text.h). */
 static size_t columns_of(const char *text, size_t n) {
   enum { FROM = 3, COUNT = 4, TO = 7 };
   size_t columns = n;
   for (size_t i = 0, digits; i < n; i += digits ? digits : 1) {
     for (digits = 0; i + digits < n && text[i + digits] >= '0' && text[i + digits] <= '9';) digits++;
-    if (digits >= FROM && digits <= TO && i > 0 && (text[i - 1] == '_' || text[i - 1] == '[')) columns += COUNT - digits;
+    if (digits >= FROM && digits <= TO && i > 0 && strchr("_[DL", text[i - 1])) columns += COUNT - digits;
   }
   return columns;
 }

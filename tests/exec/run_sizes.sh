@@ -47,6 +47,8 @@ text few "$bodies" 'potential = h*x[N-2]' 'observe ends = x[N-32] + x[N-31] + x[
 check 'emit, few members in lines' even emit few.lag 2183
 text scales 'coord w' 'param g = 1' "kinetic = sum(i in 1..N, 1/2*x[i]'^2) + k*w'^2" 'potential = g*x[N-2] + g*x[1]'
 check 'emit, terms that are short enough for one line' even emit scales.lag 3935
+text band 'coord w' "kinetic = sum(i in 1..N, 1/2*x[i]'^2) + sum(i in 1..N-1, k/4*(x[i+1]' - x[i]')^2) + k*w'^2" 'potential = h*(x[31] - x[N/2])^2 - k*cos(x[3] - x[N-30])'
+check 'emit, a band of masses' even emit band.lag 5448
 # the charge of a sum that stays one, in the model with an effect
 text spent "$bodies" "potential = sum(i in 1..N, h*cos(x[i]))" "effect drag { dissipation = h*x[1]'^2; potential = h*x[2]^2 }" "effect slow { dissipation = h*x[1]'^2 }"
 check 'noether, an effect takes energy from sums' even noether spent.lag 2100
