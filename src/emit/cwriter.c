@@ -131,17 +131,30 @@ CExpr cwriter_spell(Writer *w, const Ins *i) {
 
 /* --- statements --- */
 
+/* Columns of the text in lines that are filled: indices from 100 on, as of x_2151 = q[2150] or D2151, count as four
+ * digits, so that lines break in the same places whatever the size of a family is (late_text.h). */
+static size_t columns_of(const char *text, size_t n) {
+  enum { FROM = 3, COUNT = 4, TO = 7 };
+  size_t columns = n;
+  for (size_t i = 0, digits; i < n; i += digits ? digits : 1) {
+    for (digits = 0; i + digits < n && text[i + digits] >= '0' && text[i + digits] <= '9';) digits++;
+    if (digits >= FROM && digits <= TO && i > 0 && strchr("_[DL", text[i - 1])) columns += COUNT - digits;
+  }
+  return columns;
+}
+
 void cwriter_statement(Writer *w, const char *text) {
   size_t column = 2 + w->indent;
   sb_printf(w->out, "%*s", (int)column, "");
   while (*text) {
     size_t n = strcspn(text + 1, " ") + 1; /* a word with the space before it */
-    if (*text == ' ' && column > 8 + w->indent && column + n > WRAP_COLUMNS) {
+    const size_t columns = columns_of(text, n);
+    if (*text == ' ' && column > 8 + w->indent && column + columns > WRAP_COLUMNS) {
       sb_printf(w->out, "\n%*s", (int)(5 + w->indent), "");
       column = 5 + w->indent;
     }
     sb_putn(w->out, text, n);
-    column += n;
+    column += columns;
     text += n;
   }
 }
@@ -154,7 +167,7 @@ void cwriter_line(Writer *w, const char *text) {
 /* Whether the text is short enough to stand inside another expression; a long prefix counts as three letters. */
 int cwriter_is_short(const Writer *w, CExpr x) {
   enum { INLINE_MAX = 64 };
-  size_t n = strlen(x.text), prefix = strlen(w->style->prefix);
+  size_t n = columns_of(x.text, strlen(x.text)), prefix = strlen(w->style->prefix);
   for (const char *s = x.text; prefix > 3 && (s = strstr(s, w->style->prefix)) != NULL; s += prefix) n -= prefix - 3;
   return n <= INLINE_MAX;
 }
@@ -240,12 +253,13 @@ void cwrite_rows(const IrTable *table, const char *name, const char *prefix, con
       sb_printf(&row, "%s%s", i ? ", " : "", number);
     }
     sb_puts(&row, k + 1 < c->n ? ")," : ")");
-    if (column + row.n > WRAP_COLUMNS) {
+    const size_t columns = columns_of(row.at, row.n);
+    if (column + columns > WRAP_COLUMNS) {
       sb_printf(out, "\n%s ", indent);
       column = strlen(indent) + 1;
     }
     sb_putn(out, sb_text(&row), row.n);
-    column += row.n;
+    column += columns;
   }
   sb_printf(out, "\n%s};\n", indent);
 }
@@ -303,14 +317,14 @@ static void write_array(Writer *w, int array) {
     }
     const char *name = cnames_take(&w->names, w->p->ins.at[at[k]].name);
     const char *text = arena_printf(w->a, "%s = %s", name, x.text);
-    if (column && column + strlen(text) + 2 >= LINE_MAX_COLUMNS) {
+    if (column && column + columns_of(text, strlen(text)) + 2 >= LINE_MAX_COLUMNS) {
       sb_puts(w->out, ";\n");
       column = 0;
     }
     const char *full =
         column ? arena_printf(w->a, ", %s", text) : arena_printf(w->a, "  const %s_REAL %s", w->style->prefix, text);
     sb_puts(w->out, full);
-    column += strlen(full);
+    column += columns_of(full, strlen(full));
     w->piece[at[k]] = (CExpr){name, C_ATOM, 0};
   }
   if (column) sb_puts(w->out, ";\n");

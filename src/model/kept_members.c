@@ -14,6 +14,11 @@ static uint32_t *given_numbers(Builder *b, const Entity *e, uint32_t primes) {
   return f.by;
 }
 
+static int is_component(const Ast *ast, AstId lhs) {
+  const AstExpr *x = ast_expr(ast, lhs);
+  return (x->kind == AST_PRIME ? ast_expr(ast, x->a) : x)->kind == AST_MEMBER;
+}
+
 /* Reports setting s, which replaces numbers of an older one. */
 static void report_replaced(Builder *b, const MemberSetting *s, const MemberSetting *old, int all) {
   Span span = ast_expr(b->ast, s->lhs)->span;
@@ -24,7 +29,10 @@ static void report_replaced(Builder *b, const MemberSetting *s, const MemberSett
                old->n < s->n ? "write the more general one first" : "leave out one of them");
   } else {
     diag_error(b->diags, span, "`%s` and `%s` share members: the second would win" HELP
-               "ranges may lie one within the other, the narrower one last", text, before);
+               "neither lies within the other: %s", text, before,
+               is_component(b->ast, s->lhs) != is_component(b->ast, old->lhs)
+                   ? "give the components of the vector one by one, after the range"
+                   : "end one of them where the other begins");
   }
   diag_also(b->diags, ast_expr(b->ast, old->lhs)->span, "given here");
 }

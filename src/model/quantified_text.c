@@ -55,6 +55,28 @@ static int affine_product(AstKind kind, Affine x, Affine y, Affine *out) {
 }
 
 static AstId taken_branch(Eval *ev, AstId id, const Indices *of, int depth);
+static int is_affine(Eval *ev, AstId id, const Indices *of, int depth, Affine *out);
+
+static int64_t floored(int64_t x, int64_t by) { return (x - (x % by + by) % by) / by; }
+
+/* Whether it is mod(x, m) of an x affine in i that passes few multiples of m, as in a ring; it is *rest from of->lo up
+ * to *last. */
+static int is_turn(Eval *ev, AstId id, const Indices *of, int depth, Affine *rest, int64_t *last) {
+  enum { LARGEST = 1 << 30 };
+  const AstExpr *call = ast_expr(ev->b->ast, id);
+  AstId second = call->kind == AST_CALL && call->args ? ast_expr(ev->b->ast, call->args)->next : 0;
+  Affine x, m;
+  if (!second || strcmp(call->name, "mod") != 0 || !is_affine(ev, call->args, of, depth, &x) ||
+      !is_affine(ev, second, of, depth, &m))
+    return 0;
+  if (x.by_j || m.by_i || m.by_j || m.first <= 0 || llabs(x.first) > LARGEST || llabs(x.by_i) > LARGEST) return 0;
+  int64_t below = floored(x.first + x.by_i * of->lo, m.first) * m.first;
+  *rest = (Affine){x.first - below, x.by_i, 0};
+  *last = x.by_i > 0   ? floored(m.first - 1 - rest->first, x.by_i)
+          : x.by_i < 0 ? floored(rest->first, -x.by_i)
+                       : of->hi;
+  return llabs(x.by_i) * (of->hi - of->lo) <= m.first;
+}
 
 /* Whether the expression is affine in the indices. */
 static int is_affine(Eval *ev, AstId id, const Indices *of, int depth, Affine *out) {
@@ -86,6 +108,8 @@ static int is_affine(Eval *ev, AstId id, const Indices *of, int depth, Affine *o
              affine_product(x->kind, a, b, out);
     case AST_CALL: {
       AstId taken = taken_branch(ev, id, of, depth - 1);
+      int64_t last;
+      if (is_turn(ev, id, of, depth - 1, out, &last)) return last >= of->hi;
       return taken && is_affine(ev, taken, of, depth - 1, out);
     }
     default: return 0;
@@ -302,7 +326,7 @@ static const AstStmt *let_read(Eval *ev, AstId id, const Indices *of, Affine *at
 }
 
 /* Lowers of->hi to the last index up to which each `if` of the text, through lets by index, takes the branch that it
- * takes for of->lo. 0: lets depend on each other. */
+ * takes for of->lo, and each `mod` of a ring takes away as much. 0: lets depend on each other. */
 static int same_branches(Eval *ev, AstId id, Indices *of, int depth) {
   const Ast *ast = ev->b->ast;
   AstId first = ast_expr(ast, id)->first, yes, no;
@@ -313,6 +337,8 @@ static int same_branches(Eval *ev, AstId id, Indices *of, int depth) {
     Indices in = {.lo = of->lo, .hi = of->hi};
     if (let && indices_of_let(ast, let, at, &in) && (!depth || !same_branches(ev, let->rhs, &in, depth - 1))) return 0;
     of->hi = in.hi;
+    int64_t last;
+    if (!skip[k - first] && is_turn(ev, k, of, MOST_DEPTH, &at[0], &last) && last < of->hi) of->hi = last;
     if (skip[k - first] || !is_choice(ast, k, &yes, &no)) continue;
     AstId condition = ast_expr(ast, k)->args;
     int is = truth_at(ev, condition, of, MOST_DEPTH, of->lo);

@@ -4,6 +4,7 @@
 #include "symmetry/charges.h"
 #include "mech/discontinuity.h"
 #include "sym/prove.h"
+#include "sym/sum_nest.h"
 
 /* --- cyclic coordinates --- */
 
@@ -78,21 +79,63 @@ Name noether_declared(const NoetherReport *r, uint32_t k) {
 
 /* --- generators in the graph of another model --- */
 
-/* The symbol of that name in another model; 0: there is none. */
-static Expr symbol_in(const Eqns *to, const Symbol *s) {
+/* The symbol of that name in another model; NULL: there is none. */
+static const Symbol *symbol_in(const Eqns *to, const Symbol *s) {
   for (SymId k = 1; k <= expr_symbol_count(to->g); k++) {
     const Symbol *x = expr_symbol(to->g, k);
-    if (strcmp(x->name, s->name) == 0 && x->kind != SYM_LOCAL) return x->node;
+    if (strcmp(x->name, s->name) == 0 && (x->kind == SYM_LOCAL) == (s->kind == SYM_LOCAL)) return x;
   }
-  return 0;
+  return NULL;
+}
+
+static Expr in_graph(const Eqns *to, ExprGraph *g, Expr x);
+
+/* Replaces expressions of a body by the same in the graph of another model; 0 means none. */
+static int body_in(const Eqns *to, ExprGraph *g, Expr *x, uint32_t n) {
+  for (uint32_t k = 0; k < n; k++)
+    if (x[k] && !(x[k] = in_graph(to, g, x[k]))) return 0;
+  return 1;
+}
+
+/* A CELL, and its body, in the graph of another model, arguments by `map`. */
+static Expr cell_in(const Eqns *to, ExprGraph *g, Expr x, const ExprMap *map) {
+  Arena *a = to->m->arena;
+  Expr nest = expr_cell_nest(g, x);
+  SumNest s = *expr_sum_nest(g, nest);
+  Expr *args = ARENA_ARRAY(a, Expr, s.nargs + 1);
+  NestRead *reads = ARENA_ARRAY(a, NestRead, s.nreads + 1);
+  NestShare *shares = ARENA_ARRAY(a, NestShare, s.nshares + 1);
+  NearTest *near = ARENA_NEW(a, NearTest);
+  if (s.near) *near = *s.near;
+  for (uint32_t k = 0; k < s.nargs; k++) args[k] = expr_map_get(map, expr_sum_arg(g, nest, k));
+  for (uint32_t k = 0; k < s.nreads; k++) {
+    const Symbol *same = symbol_in(to, expr_symbol(g, s.reads[k].symbol));
+    if (!same) return 0;
+    reads[k] = s.reads[k];
+    reads[k].symbol = expr_sym_id(to->g, same->node);
+  }
+  for (uint32_t k = 0; k < s.nshares; k++) {
+    shares[k] = s.shares[k];
+    if (!body_in(to, g, &shares[k].value, 1)) return 0;
+  }
+  if (!body_in(to, g, &near->test, 1) || !body_in(to, g, &near->cut, 1) || !body_in(to, g, near->at_i, 3) ||
+      !body_in(to, g, near->at_j, 3) || !body_in(to, g, near->side, 3))
+    return 0;
+  s.reads = reads, s.shares = shares, s.near = s.near ? near : NULL, s.far = NULL, s.slopes = NULL;
+  return expr_sum_cell(to->g, &s, args, expr_cell_number(g, x));
 }
 
 /* Node x in the graph of another model, arguments by `map`, definitions expanded. 0: a symbol is missing. */
-static Expr node_in(const Eqns *to, const ExprGraph *g, Expr x, const ExprMap *map) {
+static Expr node_in(const Eqns *to, ExprGraph *g, Expr x, const ExprMap *map) {
   ExprGraph *other = to->g;
   ExprOp op = expr_op(g, x);
   if (op == EX_NUM) return expr_num(other, expr_number(g, x));
-  if (op == EX_SYM) return symbol_in(to, expr_sym_of(g, x));
+  if (op == EX_NEST) return 0; /* its cells are carried over */
+  if (op == EX_CELL) return cell_in(to, g, x, map);
+  if (op == EX_SYM) {
+    const Symbol *same = symbol_in(to, expr_sym_of(g, x));
+    return same ? same->node : 0;
+  }
   if (op == EX_SUM || op == EX_PROD) {
     Expr all = expr_int(other, op == EX_PROD);
     for (ExprPair pair = {0}; expr_next_pair(g, x, op, &pair);) {

@@ -35,7 +35,26 @@ check "emit, pairs, N = 4096" even emit pairs.lag 4096
 for command in emit check derive noether 'derive --format latex' 'derive --format c' 'emit --standalone'; do
   check "$command, a ring, N = 2106" even "$command" ring.lag 2106
 done
+text mod "$bodies" "$(echo "$ring" | sed 's/if(i < N, i+1, 1)/mod(i, N) + 1/')" 'symmetry shift(s): x[i in 1..N] -> x[i] + s'
+text if "$bodies" "$ring" 'symmetry shift(s): x[i in 1..N] -> x[i] + s'
+check 'emit, a ring by mod' even emit mod.lag 2106
+rings() { for file in mod if; do "$LAGC" "$1" "$TMP/$file.lag" -D N="$2" >"$TMP/$file.out" 2>"$TMP/$file.err" || return 1; done; cmp "$TMP/mod.out" "$TMP/if.out" && ! grep 'written out' "$TMP/mod.err"; }
+sed -i 's/mod(i, N) + 1/mod(i - 2, N) + 1/' "$TMP/mod.lag" && sed -i 's/if(i < N, i+1, 1)/if(i > 1, i-1, N)/' "$TMP/if.lag"
+for size in 7 2106; do check "emit, a ring by mod, which is that by if, N = $size" rings emit $size; done
 check 'derive, every second member otherwise' even derive parity.lag 2100
+# lines are filled alike, whether members have numbers of three digits or of four
+text few "$bodies" 'potential = h*x[N-2]' 'observe ends = x[N-32] + x[N-31] + x[N-30] + x[N-29] + x[N-4] + x[N-3] + x[N-2] + x[N-1] + x[N]'
+check 'emit, few members in lines' even emit few.lag 2183
+text scales 'coord w' 'param g = 1' "kinetic = sum(i in 1..N, 1/2*x[i]'^2) + k*w'^2" 'potential = g*x[N-2] + g*x[1]'
+check 'emit, terms that are short enough for one line' even emit scales.lag 3935
+text band 'coord w' "kinetic = sum(i in 1..N, 1/2*x[i]'^2) + sum(i in 1..N-1, k/4*(x[i+1]' - x[i]')^2) + k*w'^2" 'potential = h*(x[31] - x[N/2])^2 - k*cos(x[3] - x[N-30])'
+check 'emit, a band of masses' even emit band.lag 5448
+# the charge of a sum that stays one, in the model with an effect
+text spent "$bodies" "potential = sum(i in 1..N, h*cos(x[i]))" "effect drag { dissipation = h*x[1]'^2; potential = h*x[2]^2 }" "effect slow { dissipation = h*x[1]'^2 }"
+check 'noether, an effect takes energy from sums' even noether spent.lag 2100
+charge="Q1 = sum(i in 1..2100, k*x[i]'^2/2) + sum(i in 1..2100, h*cos(x[i])) + h*x[2]^2"
+spends() { "$LAGC" noether "$TMP/spent.lag" -D N=2100 >"$TMP/spent.out" 2>&1 && grep -qF "$charge" "$TMP/spent.out" && [ "$(grep -c 'Q1 =' "$TMP/spent.out")" = 2 ]; }
+check 'its charge is that of the model and what the effect adds' spends
 
 # ---- neither time nor memory depends on the size; 60 MB hold some 300 coordinates, and 10^6 take 3 GB
 bounded() { (ulimit -v 60000 && "$LAGC" "$@" >"$TMP/bounded.out" 2>&1) || { tail -3 "$TMP/bounded.out"; return 1; }; }
