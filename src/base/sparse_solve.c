@@ -217,17 +217,19 @@ static void bring_pivot(const Elimination *x, Row *r, long double least) {
   r->at[0] = pivot;
 }
 
-/* Chooses the next pivot row, with a pivot of at least a sixteenth of the largest element: a power of two, so that a
- * size class holds no row that is searched in vain. Returns 0 where no element is above `least`. */
+/* Chooses the next pivot row, with a pivot of at least a sixteenth of the largest element, or of the initial largest
+ * where elements have grown, as in a row that sums all members (its one long row would be taken and fill the others).
+ * Sixteenth: a power of two, so that a size class holds no row that is searched in vain. Returns 0 where no element is
+ * above `least`. */
 static int choose_pivot_row(Elimination *x, long double least, uint32_t *row) {
   static const Row none;
   long double largest = x->n ? x->most[1] : 0;
   if (!(largest > least)) return 0;
   int exponent = 0;
   (void)frexpl(largest, &exponent);
-  long double enough = isfinite(largest) ? ldexpl(1, exponent - 4) : largest;
+  long double enough = isfinite(largest) ? ldexpl(1, (exponent < x->top ? exponent : x->top) - 4) : largest;
   uint32_t i = *row = shortest_row(x, enough);
-  bring_pivot(x, &x->rows[i], enough);
+  bring_pivot(x, &x->rows[i], fmaxl(enough, x->most[x->n + (size_t)i] / 16));
   unlist_row(x, i);
   update_largest(x, i, &none);
   x->is_taken[i] = 1;

@@ -39,16 +39,19 @@ static int same_unit(const Model *m, uint32_t i, uint32_t j) {
   return strcmp(m->coords.at[i].unit.text, m->coords.at[j].unit.text) == 0;
 }
 
-/* most[i] := largest absolute value among coordinates (velocities) with the unit of coordinate i. The first
- * coordinate of each unit searches for all of that unit. */
+/* most[i] := largest absolute value among coordinates (velocities) with the unit of coordinate i; a model has few
+ * units. */
 static void largest_of_unit(const Eqns *e, const long double *symbols, int positions, long double *most) {
+  Arena *arena = e->m->arena;
+  uint32_t units = 0, *first = ARENA_ARRAY(arena, uint32_t, e->n + 1), *unit = ARENA_ARRAY(arena, uint32_t, e->n + 1);
   for (uint32_t i = 0; i < e->n; i++) {
-    uint32_t first = 0;
-    while (!same_unit(e->m, first, i)) first++;
-    most[i] = first < i ? most[first] : 0;
-    for (uint32_t j = i; first == i && j < e->n; j++)
-      if (same_unit(e->m, i, j)) most[i] = fmaxl(most[i], fabsl(symbols[component(e, j, positions)]));
+    uint32_t k = 0;
+    while (k < units && !same_unit(e->m, first[k], i)) k++;
+    if (k == units) first[units++] = i, most[i] = 0;
+    unit[i] = first[k];
+    most[unit[i]] = fmaxl(most[unit[i]], fabsl(symbols[component(e, i, positions)]));
   }
+  for (uint32_t i = 0; i < e->n; i++) most[i] = most[unit[i]];
 }
 
 /* reach[i] := scale of coordinate i or its velocity: the largest of its unit (velocities: at least that over the

@@ -1,5 +1,5 @@
-/* One tape evaluates M, f, flows, energy and constraints at a state; sparse elimination solves [M -A^T; A 0] and the
- * projections. */
+/* Two tapes evaluate a state, M and constraints alone for projections and ranks, f, flows and energy where a motion
+ * is completed; sparse elimination solves [M -A^T; A 0] and the projections. */
 #include "mech/states.h"
 
 #include <float.h>
@@ -10,9 +10,8 @@
 
 struct StateSolver {
   const Eqns *e;
-  EvalTape *tape; /* entries of M, f, flows, energy; entries of A, c, r, demand */
-  uint32_t first_entry; /* index of A's first entry in the tape's results */
-  long double *out, *b; /* the tape's results; right-hand side and solution */
+  EvalTape *tape, *forces; /* entries of M, entries of A, c, r, demand; f, flows, energy */
+  long double *out, *f, *b; /* the tapes' results; right-hand side and solution */
   SparseElements a;     /* matrix of the linear system */
   SparseVector row;     /* a scaled row of A */
   /* [n + m] exponents of states_column_scale for the system's unknowns, at the state evaluated last */
@@ -29,11 +28,13 @@ StateSolver *states_new(const Eqns *e) {
   s->e = e;
   s->nflows = e->m->states.n;
   Expr *roots = ARENA_ARRAY(arena, Expr, e->mass.n + n + s->nflows + 1 + k->A.n + 3 * (size_t)k->n);
-  for (uint32_t i = 0; i < e->mass.n; i++) roots[count++] = e->mass.at[i].e;
   for (uint32_t i = 0; i < n; i++) roots[count++] = e->f[i];
   for (uint32_t i = 0; i < s->nflows; i++) roots[count++] = e->flow[i];
   roots[count++] = e->energy;
-  s->first_entry = count;
+  s->forces = eval_tape(e->g, roots, count);
+  s->f = ARENA_ARRAY(arena, long double, count);
+  count = 0;
+  for (uint32_t i = 0; i < e->mass.n; i++) roots[count++] = e->mass.at[i].e;
   for (uint32_t i = 0; i < k->A.n; i++) roots[count++] = k->A.at[i].e;
   for (uint32_t i = 0; i < k->nholonomic; i++) roots[count++] = k->c[i];
   for (uint32_t i = 0; i < k->n; i++) roots[count++] = k->r[i];
@@ -45,21 +46,15 @@ StateSolver *states_new(const Eqns *e) {
   return s;
 }
 
-/* Evaluates the tape at a state. */
-static const long double *run(StateSolver *s, const long double *symbols) {
-  eval_run(s->tape, symbols, s->out);
-  s->scaled = 0;
-  return s->out;
-}
-
 static StateValues values_of(const StateSolver *s) {
   const Constraints *k = &s->e->constraints;
-  const long double *out = s->out, *A = out + s->first_entry, *c = A + k->A.n, *r = c + k->nholonomic;
+  const long double *out = s->out, *A = out + s->e->mass.n, *c = A + k->A.n, *r = c + k->nholonomic;
   return (StateValues){.mass = out, .A = A, .c = c, .r = r, .demand = r + k->n};
 }
 
 StateValues states_at(StateSolver *s, const long double *symbols) {
-  run(s, symbols);
+  eval_run(s->tape, symbols, s->out);
+  s->scaled = 0;
   return values_of(s);
 }
 
@@ -88,7 +83,7 @@ static void fill(StateSolver *s, int with_mass, uint32_t rows) {
   s->a.n = 0;
   if (with_mass) states_put_mass(e, s->out, &s->a);
   for (uint32_t i = 0; i < e->n && !with_mass; i++) sparse_put(e->m->arena, &s->a, i, i, 1);
-  states_put_constraints(e, s->out + s->first_entry, rows, &s->a);
+  states_put_constraints(e, values_of(s).A, rows, &s->a);
 }
 
 /* s->b[n] := the least d with A d = -g for the first rows. 0: not finite. */
@@ -123,7 +118,7 @@ static long double motion_size(const StateSolver *s, const long double *symbols,
  * cause, whatever the scale of a constraint. */
 static int are_small(const StateSolver *s, const long double *residual, uint32_t rows, long double size) {
   const Entries *A = &s->e->constraints.A;
-  const long double *values = s->out + s->first_entry;
+  const long double *values = values_of(s).A;
   for (uint32_t k = 0, at = 0; k < rows; k++) {
     long double steepness = 0;
     for (; at < A->n && A->at[at].row == k; at++) steepness += fabsl(values[at]);
@@ -201,7 +196,8 @@ int states_complete(StateSolver *s, long double *symbols) {
     symbols[closed] = e->definitions && !expr_is_zero(e->g, e->definitions[closed]);
   }
   if (k->n && !states_project(s, symbols)) return 0;
-  const long double *demand = states_at(s, symbols).demand, *f = s->out + e->mass.n, *flow = f + n;
+  const long double *demand = states_at(s, symbols).demand, *f = s->f, *flow = f + n;
+  eval_run(s->forces, symbols, s->f);
   for (uint32_t i = 0; i < n + k->n; i++) s->b[i] = i < n ? f[i] : demand[i - n];
   rank = sparse_solve(m->arena, n + k->n, states_system(s), s->b, k->n ? 1e-13L : 0, NULL);
   if (rank < n + k->n && !k->n) return 0;

@@ -393,6 +393,9 @@ const char *expression_digits(Builder *b, Expr e);
 void add_definition(Builder *b, EntKind kind, Definition d);
 /* resolve_function.c: the functions that functions.def defines by a text, as far as some expression calls them. */
 void declare_composed(Builder *b);
+/* Notes in the Ast which of them expressions call that were read since the last note: once for a file, as each scene
+ * declares them. */
+void note_composed(Ast *ast);
 
 /* Evaluates a let or an observable, unless it has a value already. */
 void resolve_definition(Builder *b, EntKind kind, uint32_t index);

@@ -27,9 +27,23 @@ FileIndex *file_index(Ast *ast) {
   return x;
 }
 
+void note_composed(Ast *ast) {
+  const AstStmt *first = parse_composed(ast);
+  AstId id = ast->noted ? ast->noted : 1;
+  for (; id < ast->exprs.n; id++) {
+    const AstExpr *x = ast_expr(ast, id);
+    for (const AstStmt *s = x->kind == AST_CALL ? first : NULL; s; s = s->next) {
+      uint32_t k = 0;
+      while (k < ast->called.n && ast->called.at[k] != s) k++;
+      if (s->name == x->name && k == ast->called.n) vec_push(ast->arena, &ast->called, s);
+    }
+  }
+  ast->noted = id;
+}
+
 void model_prepare(Ast *ast) {
   file_index(ast);
-  parse_composed(ast);
+  note_composed(ast);
 }
 
 const AstStmt *find_named(Ast *ast, AstStmtKind kind, const char *name) {

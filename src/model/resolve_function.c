@@ -142,17 +142,13 @@ static Value call_instance(Eval *ev, const AstExpr *x, const Instance *in) {
 }
 
 void declare_composed(Builder *b) {
-  const AstStmt *first = parse_composed(b->ast);
-  for (AstId id = 1; id < b->ast->exprs.n; id++) {
-    const AstExpr *x = ast_expr(b->ast, id);
-    if (x->kind != AST_CALL) continue;
-    for (const AstStmt *s = first; s; s = s->next) {
-      if (s->name != x->name || entity_named(b, s->name)) continue;
-      if (declared_in_use(b, s->name, NULL)) continue;
-      Entity f = {.kind = ENT_FUNCTION, .index = b->functions.n, .name = s->name, .span = s->name_span};
-      vec_push(b->arena, &b->scope.behind, f);
-      add_definition(b, ENT_FUNCTION, (Definition){.stmt = s, .name = s->name, .composed = 1});
-    }
+  note_composed(b->ast);
+  for (uint32_t k = 0; k < b->ast->called.n; k++) {
+    const AstStmt *s = b->ast->called.at[k];
+    if (entity_named(b, s->name) || declared_in_use(b, s->name, NULL)) continue;
+    Entity f = {.kind = ENT_FUNCTION, .index = b->functions.n, .name = s->name, .span = s->name_span};
+    vec_push(b->arena, &b->scope.behind, f);
+    add_definition(b, ENT_FUNCTION, (Definition){.stmt = s, .name = s->name, .composed = 1});
   }
 }
 

@@ -110,9 +110,19 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
   return FAILED;
 }
 
+/* Refuses a family without an index in a map, as of a symmetry. */
+static Value map_of_members(Builder *b, const Entity *e, Span span) {
+  const char *second = e->ndims > 1 ? ",j" : "", *other = "";
+  if (e->ndims > 1) other = arena_printf(b->arena, ", j in %lld..%lld", (long long)e->lo[1], (long long)e->hi[1]);
+  return refuse(b, span,
+                "`%s` is a family: say which member" HELP "a map of all is `%s[i in %lld..%lld%s] -> %s[i%s] + ...`",
+                e->name, e->name, (long long)e->lo[0], (long long)e->hi[0], other, e->name, second);
+}
+
 Value whole_value(Eval *ev, const Entity *e, Span span) {
   if (!e->ndims || e->kind == ENT_NONE) return entity_value(ev, e, NULL, span);
   Name one = member_name(ev->b->ast, e->name, e->lo, e->ndims);
+  if (ev->b->nbound && ev->where == IN_DYNAMICS && is_coordinate(ev->b, e)) return map_of_members(ev->b, e, span);
   return refuse(ev->b, span,
                 "`%s` is a family: say which member" HELP "the first is `%s`; `sum(i in ..., ...)` adds over all",
                 e->name, one);

@@ -6,6 +6,8 @@
 #include "sym/sum_nest.h"
 
 static long double power(long double base, Num e) {
+  if (e.den == 1 && e.num == 1) return base;
+  if (e.den == 1 && e.num == -1) return 1 / base;
   if (!num_is_exact(e)) return powl(base, num_value(e));
   if (e.den == 1) {
     long double r = 1, b = base;
@@ -46,7 +48,8 @@ struct EvalTape {
   TapeStep *step;
   long double *value;
   VEC(uint32_t) arg;
-  VEC(Num) number;
+  VEC(Num) number;           /* exponents of products */
+  VEC(long double) factor;   /* coefficients of sums; 1 elsewhere */
   int round_to_double;     /* factors and partial products are rounded to double */
   uint32_t *root; /* step of each root; UINT32_MAX for root 0 */
 };
@@ -55,7 +58,7 @@ static long double pairs_value(const EvalTape *t, const TapeStep *o) {
   long double r = o->op == EX_SUM ? 0 : 1;
   for (uint32_t i = o->first; i < o->first + o->n; i++) {
     long double x = t->value[t->arg.at[i]];
-    if (o->op == EX_SUM) r += number(t->number.at[i]) * x;
+    if (o->op == EX_SUM) r += t->factor.at[i] * x;
     else if (t->round_to_double) r = (double)(r * (double)power(x, t->number.at[i]));
     else r *= power(x, t->number.at[i]);
   }
@@ -149,6 +152,7 @@ static TapeStep compile_step(EvalTape *t, ExprGraph *g, Arena *a, Expr e, const 
     Expr x = pairs ? expr_pair(g, e, op, i, &k) : expr_arg(g, e, i);
     vec_push(a, &t->arg, expr_map_get(place, x) - 1);
     vec_push(a, &t->number, k);
+    vec_push(a, &t->factor, op == EX_SUM ? number(k) : 1);
   }
   o.n = n;
   if (op == EX_NEST) o.nest = compile_nest(g, a, e);
@@ -168,6 +172,7 @@ EvalTape *eval_tape(ExprGraph *g, const Expr *roots, uint32_t n) {
   t->nroots = n;
   vec_push(a, &t->arg, 0); /* keeps the arrays non-NULL where no step has arguments */
   vec_push(a, &t->number, num_int(0));
+  vec_push(a, &t->factor, 0);
   t->step = ARENA_ARRAY(a, TapeStep, l.n + 1);
   t->value = ARENA_ARRAY(a, long double, l.n + 1);
   t->root = ARENA_ARRAY(a, uint32_t, n + 1);
@@ -194,6 +199,7 @@ void eval_tape_free(ExprGraph *g, EvalTape *t) {
   arena_recycle(a, t->root, (t->nroots + 1) * sizeof *t->root);
   arena_recycle(a, t->arg.at, t->arg.cap * sizeof *t->arg.at);
   arena_recycle(a, t->number.at, t->number.cap * sizeof *t->number.at);
+  arena_recycle(a, t->factor.at, t->factor.cap * sizeof *t->factor.at);
 }
 
 static void read_roots(const EvalTape *t, long double *out) {

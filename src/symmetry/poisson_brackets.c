@@ -171,28 +171,26 @@ static void scale_charges(const BracketFit *w, Sample *x) {
   }
 }
 
-static uint32_t draws_of(const BracketFit *w) { return w->n <= 16 ? 1 : w->n <= 300 ? 8 : 2; }
+/* Evaluates all roots at a random state, bodies in a row at distances of 4 or so where `in_row`; returns the largest
+ * derivative, infinite where a root is not finite. */
+static long double draw_one(const BracketFit *w, uint32_t choice, uint32_t seed, int in_row, long double *symbols,
+                            long double *out) {
+  sample_state(w->g, 50 + seed + (in_row ? 1000 : 0), symbols);
+  for (uint32_t i = 0; i < w->n && in_row; i++) symbols[w->q[i]] += 4 * (long double)i - 2 * (long double)w->n;
+  for (uint32_t k = 0; k < w->choices.n; k++)
+    symbols[w->choices.param[k]] = w->choices.at[choice][w->choices.param[k]];
+  eval_run(w->tape, symbols, out);
+  for (uint32_t k = 0; k < w->roots; k++)
+    if (!isfinite(out[k])) return HUGE_VALL;
+  return dense_largest(out + w->r, (size_t)w->r * w->n);
+}
 
-/* Values of all roots at a random state; 0: they are not finite. Of many bodies some nearly touch, and the rounding of
- * their forces would drown the other charges: several states are drawn, every second one spread wide, and the one with
- * the smallest derivatives is kept. */
-static int draw_state(const BracketFit *w, uint32_t choice, uint32_t seed, long double *symbols, long double *out) {
-  uint32_t draws = draws_of(w);
-  long double *one = ARENA_ARRAY(w->scratch, long double, w->roots + 1), least = HUGE_VALL;
-  for (uint32_t d = 0; d < draws; d++) {
-    int finite = 1;
-    sample_state(w->g, 50 + seed + 1000 * d, symbols);
-    for (uint32_t i = 0; i < w->n && d % 2; i++) symbols[w->q[i]] *= w->n;
-    for (uint32_t k = 0; k < w->choices.n; k++)
-      symbols[w->choices.param[k]] = w->choices.at[choice][w->choices.param[k]];
-    eval_run(w->tape, symbols, one);
-    for (uint32_t k = 0; k < w->roots; k++) finite = finite && isfinite(one[k]);
-    long double largest = dense_largest(one + w->r, (size_t)w->r * w->n);
-    if (!finite || largest >= least) continue;
-    least = largest;
-    memcpy(out, one, w->roots * sizeof *out);
-  }
-  return least < HUGE_VALL;
+/* Whether the states have the bodies in a row: of many at random places some nearly touch, and the rounding of their
+ * forces would drown the other charges. The first states decide. */
+static int is_row_better(const BracketFit *w, uint32_t choice, long double *symbols, long double *out) {
+  if (w->n <= 16) return 0;
+  long double at_random = draw_one(w, choice, 1, 0, symbols, out);
+  return draw_one(w, choice, 1, 1, symbols, out) < at_random;
 }
 
 /* Evaluates charges and brackets at random states. 0: too few states have finite values. */
@@ -201,9 +199,10 @@ static int draw_sample(const BracketFit *w, uint32_t choice, Sample *x) {
   long double *symbols = ARENA_ARRAY(w->scratch, long double, count),
               *out = ARENA_ARRAY(w->scratch, long double, w->roots + 1);
   double n = w->n, work = w->form.n > 8 * w->n ? n * n * n : 0; /* elimination skips zeros */
+  int in_row = is_row_better(w, choice, symbols, out);
   for (uint32_t seed = 1; done < x->states && seed < 20 + 4 * x->states; seed++) {
     if (!search_goes_on(w->limit, work)) return 0;
-    if (!draw_state(w, choice, seed, symbols, out) || !to_phase_space(w, out)) continue;
+    if (draw_one(w, choice, seed, in_row, symbols, out) == HUGE_VALL || !to_phase_space(w, out)) continue;
     memcpy(x->charges + (size_t)done * (w->r + 1), out, w->r * sizeof *out);
     x->charges[(size_t)done * (w->r + 1) + w->r] = 1;
     all_brackets(w, out, x->brackets + (size_t)done * w->pairs, x->size);
@@ -233,7 +232,7 @@ static int fit(const BracketFit *w, uint32_t choice, long double *c) {
   uint32_t m = w->r + 1;
   Sample x = sample_new(w, m + SPARE_STATES);
   enum { TURN = 40 }; /* operations of one turn of a sum */
-  if (!search_goes_on(w->limit, TURN * w->turns * draws_of(w) * x.states) || !draw_sample(w, choice, &x)) return 0;
+  if (!search_goes_on(w->limit, TURN * w->turns * (x.states + 2)) || !draw_sample(w, choice, &x)) return 0;
   if (w->energy < w->r) x.charges[w->energy * m + w->energy] = 1; /* an energy apart keeps what is left there: 0 */
   for (size_t pair = 0; pair < w->pairs; pair++)
     for (size_t s = 0; s < m; s++) c[pair * m + s] = x.brackets[s * w->pairs + pair];

@@ -186,6 +186,8 @@ typedef struct {
   VEC(AstFar) fars;
   AstStmt *first, *last;     /* the file's statements, includes already spliced in */
   AstStmt *composed;         /* functions that functions.def defines by a text; NULL: not yet parsed */
+  VEC(const AstStmt *) called; /* those that expressions before `noted` call, in order of first calls */
+  AstId noted;
   struct FileIndex *index;   /* statements by name (model/file_index.c); NULL: not yet made */
 } Ast;
 

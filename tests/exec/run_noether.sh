@@ -55,7 +55,7 @@ const N = 34
 coord x[N]
 lagrangian = sum(i in 1..N, x[i]'^2/2) - sum(i in 1..N, sum(j in 1..i-1, 1/(x[i] - x[j])^2))
 END
-for n in 34 60; do
+for n in 34 60 400; do # of 400 at random places, some nearly touch
   "$LAGC" noether "$TMP/calogero.lag" -D N=$n >"$TMP/calogero" 2>&1
   check "$n bodies have momentum and centre of mass" grep -q "^Q3: boost along x: the centre of mass moves uniformly" "$TMP/calogero"
   check "$n bodies scale and expand" grep -q "^found: 5 symmetries, each proved" "$TMP/calogero"
@@ -63,7 +63,7 @@ for n in 34 60; do
   for bracket in '{Q1, Q3} = Q2' '{Q1, Q4} = -2.Q1' '{Q1, Q5} = Q4' '{Q2, Q4} = -Q2' '{Q2, Q5} = -Q3' '{Q3, Q4} = Q3' '{Q4, Q5} = -2.Q5'; do
     check "$bracket" grep -q "^  $bracket\$" "$TMP/calogero"
   done
-  check "and more is not excluded, which is said" grep -q "^the linear equations of the full search could not be solved reliably" "$TMP/calogero"
+  [ $n -gt 100 ] || check "and more is not excluded, which is said" grep -q "^the linear equations of the full search could not be solved reliably" "$TMP/calogero"
 done
 
 cat >"$TMP/swarm.lag" <<'END'

@@ -52,6 +52,27 @@ static void a_solution_comes_back(void **state) {
     }
 }
 
+/* Members of mass 1 whose sum one constraint holds: x_i = f_i - mean f. The constraint's row grows to n as members are
+ * eliminated; taken as a pivot it would fill the rest, 32 bytes for each of n^2/2 elements, 64 MB. */
+static void a_row_over_all_members_fills_nothing(void **state) {
+  (void)state;
+  enum { N = 2000 };
+  const ArenaConfig config = {.max_bytes = 4 << 20};
+  Arena *a = arena_new(&config);
+  SparseElements m = {0};
+  static long double b[N + 1], f[N];
+  long double mean = 0;
+  for (uint32_t i = 0; i < N; i++) b[i] = f[i] = uniform(), mean += f[i] / N;
+  for (uint32_t i = 0; i < N; i++)
+    sparse_put(a, &m, i, i, 1), sparse_put(a, &m, i, N, -1), sparse_put(a, &m, N, i, 1);
+  jmp_buf full;
+  assert_int_equal(setjmp(full), 0);
+  arena_guard(a, &full);
+  assert_int_equal(sparse_solve(a, N + 1, &m, b, 1e-13L, NULL), N + 1);
+  for (uint32_t i = 0; i < N; i++) assert_true(fabsl(b[i] - (f[i] - mean)) < 1e-15L); /* sums of 2000 numbers below 1 */
+  arena_free(a);
+}
+
 static void rank_and_kernel(void **state) {
   (void)state;
   for (uint32_t n = 4; n <= MOST; n += 13) {
@@ -136,7 +157,9 @@ static void rows_of_a_span(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_solution_comes_back), cmocka_unit_test(rank_and_kernel), cmocka_unit_test(elements_cancel),
+      cmocka_unit_test(a_solution_comes_back),
+      cmocka_unit_test(a_row_over_all_members_fills_nothing), cmocka_unit_test(rank_and_kernel),
+      cmocka_unit_test(elements_cancel),
       cmocka_unit_test(regular_on_a_kernel),   cmocka_unit_test(rows_of_a_span),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
