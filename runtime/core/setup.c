@@ -263,8 +263,8 @@ lag_sim *lag_sim_renew(lag_sim *s, const lag_sim *from) {
 void lag_sim_free(lag_sim *s) {
   if (!s) return;
   end_run(s);
-  lag_free_all(s->fresh, s->options, s->fixed, s->start, s->signal, s->meeting_of, s->alike, s->pb.contact_room, s->scratch,
-               s->room, s);
+  lag_free_all(s->fresh, s->options, s->fixed, s->start, s->signal, s->meeting_of, s->alike, s->pb.contact_room,
+               s->scratch, s->room, s);
 }
 
 static int begun(lag_sim *s) {

@@ -160,7 +160,7 @@ done
 # A run of a few steps that take long looks for the library, too, not once in 256 steps; a wrong path shows it.
 looks_early() {
   "$LAGC" build tests/bench/models/bodies.lag -D N=400 --bytes -o "$TMP/early.bytes" && echo /no/library >"$TMP/early" || return 1
-  LAG_PROGRAM="$TMP/early.bytes" LAG_COMPILED=5 "$BUILD/lag-run" run --until 0.01 --every 0.01 --quiet -o "$TMP/early.csv" 5<"$TMP/early" 2>"$TMP/err"
+  LAG_PROGRAM="$TMP/early.bytes" LAG_COMPILED=5 "$BUILD/lag-run" --until 0.01 --every 0.01 --quiet -o "$TMP/early.csv" 5<"$TMP/early" 2>"$TMP/err"
   grep 'the C compiler failed' "$TMP/err"
 }
 check "a few long steps change over" looks_early
