@@ -173,14 +173,15 @@ static void add_state_terms(lag_sim *sim, double t, const double *y, double span
 /* terms[n] := sizes of components where their values are rounding, over some rows; 0, HUGE_VAL: not known. v:
  * scratch. */
 static void take_terms(const Samples *s, lag_sim *sim, double *terms, double *v) {
-  enum { ROWS = 5 };
-  int n = s->n, last = s->rows - 1;
+  enum { ROWS = 5, FEW = 2, MANY_OPS = 1000000 };
+  int n = s->n, last = s->rows - 1, rows = sim->scene->model->ops < MANY_OPS ? ROWS : FEW;
   double span = last > 0 ? fabs(s->t[last] - sim->scene->t0) : 0, h = lag_step_so_far(sim);
   if (!(h > 0) && last > 0) h = span / last; /* a run that has not begun: rows are about a step apart */
   if (s->output > 0) terms[0] = lag_output_terms(sim, lag_sim_time(sim), sim->now, s->output - 1);
   if (s->output != 0 || n != sim->pb.n) return;
-  for (int k = 0; k < ROWS && last >= 0; k++) {
-    int row = k * last / (ROWS - 1);
+  for (int k = 0, before = -1, row; k < rows && last >= 0; before = row, k++) {
+    row = k * last / (rows - 1);
+    if (row == before) continue;
     add_state_terms(sim, s->t[row], s->y + (size_t)row * (size_t)n, span, h, terms, v);
   }
 }

@@ -137,6 +137,7 @@ static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double m
   if (rc == LAG_OK) {
     if (second->nudged > 0) nudge(other, second->nudged);
     other->late = late;
+    other->unreported = 1;
     lag_sim_on_step(other, enough, app);
     rc = lag_error_estimate_compare(e, other, lag_sim_time(run));
     second->steps = other->run->steps;

@@ -11,6 +11,7 @@
 #include "core/core.h"
 #include "io/posix.h"
 #include "numeric/clock.h"
+#include "numeric/fnv1a.h"
 
 /* ---- The plan */
 
@@ -202,6 +203,33 @@ static void unit_of(const lag_sim *sim, const char *name, char *unit, size_t siz
   else snprintf(unit, size, "%s%s", var->unit, kind == LAG_IS_V && var->unit[0] ? "/s" : "");
 }
 
+typedef struct Called {
+  uint64_t hash; /* of a column's name, or of that with its unit */
+  int column;
+} Called;
+
+static int by_hash(const void *a, const void *b) {
+  const Called *x = a, *y = b;
+  return x->hash != y->hash ? (x->hash > y->hash) - (x->hash < y->hash) : x->column - y->column;
+}
+
+/* Whether two columns may have one name; there may be as many as coordinates. */
+static int may_be_alike(const Table *t) {
+  size_t n = 2 * (size_t)t->ncols;
+  Called *all = malloc((n + 1) * sizeof *all);
+  char label[sizeof *t->cols + 4];
+  int alike = !all;
+  for (size_t i = 0; all && i < n; i++) {
+    const Column *c = &t->cols[i / 2];
+    const char *text = i % 2 ? lag_column_label(c, label, sizeof label) : c->name;
+    all[i] = (Called){lag_hash_text(LAG_FNV1A_START, text), (int)(i / 2)};
+  }
+  if (all) qsort(all, n, sizeof *all, by_hash);
+  for (size_t i = 1; all && i < n; i++) alike |= all[i].hash == all[i - 1].hash && all[i].column != all[i - 1].column;
+  free(all);
+  return alike;
+}
+
 /* Two columns of one name could not be told apart, and NumPy refuses the file; a measure called as a name that
  * varies is its value at the end. */
 static int check_columns(SweepApp *s) {
@@ -211,6 +239,7 @@ static int check_columns(SweepApp *s) {
     for (int i = s->plan.n; i < s->table.ncols - 1; i++)
       if (strcmp(c[i].name, c[k].name) == 0 && strcmp(s->variants[0].measure[i - s->plan.n], c[k].name) == 0)
         snprintf(c[i].name, sizeof c[i].name, "%.80s(end)", s->plan.factor[k].name);
+  if (!may_be_alike(&s->table)) return 0;
   for (int i = 0; i < s->table.ncols; i++)
     for (int k = 0; k < i; k++) {
       lag_column_label(&c[i], label[0], sizeof label[0]);

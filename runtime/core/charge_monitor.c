@@ -331,7 +331,8 @@ static void note_jolt(lag_sim *s, double t, const double *y, double change) {
 int lag_charges_record(lag_sim *s, double t, const double *y) {
   const double longer = 4;
   int lost = 0;
-  if (lag_sim_ncharges(s) && lag_step_so_far(s) > longer * s->charges[0].step) take_terms(s, t, y);
+  int judged = !s->unreported || watches_charges(s->scene);
+  if (judged && lag_sim_ncharges(s) && lag_step_so_far(s) > longer * s->charges[0].step) take_terms(s, t, y);
   if (lag_energy_undefined(s, t, y)) return LAG_ENAN;
   add_work(s, t);
   for (int k = 0, n = lag_sim_ncharges(s); k < n; k++) {

@@ -104,6 +104,7 @@ struct lag_sim {
   double *side_noise, *slid_off, *meets, *left, *meeting;
   int *meeting_of;       /* [3 nmodes] scratch, pb.sliding, and bytes of scratch */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
+  int *alike;            /* [nq + nz] sizes.c: the first coordinate, or state, with the unit of each */
   double *beside, *beside_noise, *beside_open; /* [n + np + nderived], [3 n], [3 n] scratch of sizes.c */
   double *saved;         /* one block: Run and the arrays below; it lies in `room`, which is freed */
   char *room;
@@ -141,6 +142,7 @@ struct lag_sim {
   double node[LAG_NODES], weight[LAG_NODES];
   int nodes, nodes_at_end; /* their number; 1: Radau's, the last of them at the end */
   int balances;          /* lag_sim_balance was called */
+  int unreported;        /* nobody reads its drifts: terms of charges are taken where one is judged */
   double *exact_peak;    /* [nexact] largest difference from the closed form */
   double *method_work;   /* [nwork] */
   size_t nwork;
@@ -509,7 +511,9 @@ int lag_monitors_impulses(lag_sim *sim);
 int lag_monitors_jump(lag_sim *sim, double t, const double *ya, const double *yb);
 int lag_monitors_side(lag_sim *sim, double t, const double *y, int after);
 
-/* sizes.c: `size` where it is more than rounding of terms of the size `terms`, else `terms`. */
+/* sizes.c: alike[nq + nz] of a simulation. */
+void lag_find_alike(const lag_model *m, int *alike);
+/* `size` where it is more than rounding of terms of the size `terms`, else `terms`. */
 double lag_above_rounding(double size, double terms);
 /* The size of the terms of the energy, forces in balance over a step h among them, and of output k, at y, t; v[nq] :=
  * of each velocity, that at which the coordinates of its unit would have this energy; HUGE_VAL: there is none. NaN: not

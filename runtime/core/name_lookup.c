@@ -8,9 +8,32 @@
 #include "core/core.h"
 #include "numeric/edit_distance.h"
 
+static int is_called(const lag_var *var, const char *name, size_t length) {
+  return var->name[0] == name[0] && strlen(var->name) == length && memcmp(var->name, name, length) == 0;
+}
+
+/* Where a member of a family that counts up from the variable `first`, as r[1].x, r[1].y, r[2].x, stands; -1: not
+ * there. stem: length of the name up to its number. */
+static int find_member(const lag_var *vars, int n, int first, const char *name, size_t length, size_t stem) {
+  long from = strtol(vars[first].name + stem, NULL, 10), to = strtol(name + stem, NULL, 10);
+  int group = 0;
+  while (first + group < n && strncmp(vars[first + group].name, name, stem) == 0 &&
+         strtol(vars[first + group].name + stem, NULL, 10) == from)
+    group++;
+  if (to < from || to - from >= (n - first) / group) return -1;
+  for (int i = first + (int)(to - from) * group, end = i + group; i < end; i++)
+    if (is_called(&vars[i], name, length)) return i;
+  return -1;
+}
+
 static int find_in(const lag_var *vars, int n, const char *name, size_t length) {
-  for (int i = 0; i < n; i++)
-    if (strlen(vars[i].name) == length && memcmp(vars[i].name, name, length) == 0) return i;
+  size_t stem = strcspn(name, "[") + 1;
+  for (int i = 0, tried = stem > length, at; i < n; i++) {
+    if (is_called(&vars[i], name, length)) return i;
+    if (tried || vars[i].name[0] != name[0] || strncmp(vars[i].name, name, stem) != 0) continue;
+    if ((at = find_member(vars, n, i, name, length, stem)) >= 0) return at;
+    tried = 1;
+  }
   return -1;
 }
 
@@ -48,15 +71,15 @@ static int find(const lag_model *m, const char *name, int *index, const lag_var 
     const lag_var *vars;
   } tables[] = {{LAG_IS_P, m->np, m->p}, {LAG_IS_Q, m->nq, m->q}, {LAG_IS_Z, m->nz, m->z}, {LAG_IS_U, m->nu, m->u}};
 
+  if (n > 1 && name[n - 1] == '\'' && (*index = find_in(m->q, m->nq, name, n - 1)) >= 0) {
+    *var = &m->q[*index];
+    return LAG_IS_V;
+  }
   for (size_t k = 0; k < sizeof tables / sizeof *tables; k++)
     if ((*index = find_in(tables[k].vars, tables[k].n, name, n)) >= 0) {
       *var = &tables[k].vars[*index];
       return tables[k].kind;
     }
-  if (n > 1 && name[n - 1] == '\'' && (*index = find_in(m->q, m->nq, name, n - 1)) >= 0) {
-    *var = &m->q[*index];
-    return LAG_IS_V;
-  }
   int count = 0, p = find_suffix(m->p, m->np, name, &count), u = find_suffix(m->u, m->nu, name, &count);
   if (count != 1) return LAG_IS_NOTHING;
   *index = p >= 0 ? p : u;

@@ -136,8 +136,10 @@ static int alloc_scratch(lag_sim *s) {
   s->start = malloc((n + 1) * sizeof(double));
   s->signal = calloc(nu + 1, sizeof *s->signal);
   s->meeting_of = calloc(3 * nm + 1, sizeof *s->meeting_of);
-  if (rc || !s->meeting_of || !s->fixed || !s->start || !s->signal) return LAG_ENOMEM;
+  s->alike = malloc((n + 1) * sizeof *s->alike);
+  if (rc || !s->alike || !s->meeting_of || !s->fixed || !s->start || !s->signal) return LAG_ENOMEM;
   for (size_t i = 0; i < n; i++) s->start[i] = NAN;
+  lag_find_alike(m, s->alike);
   s->pb.sliding = s->meeting_of + nm;
   s->pb.u = s->u;
   s->pb.signal = s->signal;
@@ -261,8 +263,8 @@ lag_sim *lag_sim_renew(lag_sim *s, const lag_sim *from) {
 void lag_sim_free(lag_sim *s) {
   if (!s) return;
   end_run(s);
-  lag_free_all(s->fresh, s->options, s->fixed, s->start, s->signal, s->meeting_of, s->pb.contact_room, s->scratch,
-               s->room, s);
+  lag_free_all(s->fresh, s->options, s->fixed, s->start, s->signal, s->meeting_of, s->alike, s->pb.contact_room,
+               s->scratch, s->room, s);
 }
 
 static int begun(lag_sim *s) {

@@ -78,12 +78,16 @@ static void noise_between(int n, double *noise, const double *up, const double *
   }
 }
 
-int lag_formula_rounding(lag_sim *s, LagFormula of, double t, const double *y, double *noise, double *up,
-                         double *down) {
-  int rc = formula_rounded(s, of, t, y, 1, up) || formula_rounded(s, of, t, y, 0, down) ||
-           formula_at(s, of, t, y, noise);
+/* noise := rounding of a formula. Enters: noise is the formula. Not 0: there are no values. */
+static int rounding_of(lag_sim *s, LagFormula of, double t, const double *y, double *noise, double *up, double *down) {
+  int rc = formula_rounded(s, of, t, y, 1, up) || formula_rounded(s, of, t, y, 0, down);
   if (!rc) noise_between(formula_length(s->scene->model, of), noise, up, down);
   return rc;
+}
+
+int lag_formula_rounding(lag_sim *s, LagFormula of, double t, const double *y, double *noise, double *up,
+                         double *down) {
+  return formula_at(s, of, t, y, noise) || rounding_of(s, of, t, y, noise, up, down);
 }
 
 /* yb[nq] := how far residuals as large as the terms of the constraints move coordinates: lengths that the state
@@ -111,34 +115,47 @@ static int same_unit(const lag_var *var, int i, int k) {
   return var[i].unit == var[k].unit || strcmp(var[i].unit, var[k].unit) == 0;
 }
 
-/* The first variable with the unit of variable i. Units stand in rows: texts are compared once a row. */
-static int first_of_unit(const lag_var *var, int i) {
-  int k = 0;
-  while (!same_unit(var, k, i))
-    for (const char *other = var[k].unit; var[k].unit == other;) k++;
-  return k;
+/* first[n] := the first variable with the unit of each. Families have one unit. */
+static void find_alike(const lag_var *var, int n, int *first) {
+  for (int i = 0; i < n; i++) {
+    int k = 0;
+    if (i > 0 && same_unit(var, i - 1, i)) k = first[i - 1];
+    else
+      while (!same_unit(var, k, i)) k++;
+    first[i] = k;
+  }
 }
 
-/* Whether coordinate i is the first of its unit. */
-static int is_first(const lag_model *m, int i) {
-  return (i == 0 || !same_unit(m->q, i, i - 1)) && first_of_unit(m->q, i) == i;
+void lag_find_alike(const lag_model *m, int *first) {
+  find_alike(m->q, m->nq, first);
+  find_alike(m->z, m->nz, first + m->nq);
 }
+
+/* The energy where all coordinates with the unit of coordinate i have the velocity h, and others rest. */
+static double energy_moving(lag_sim *s, double t, const double *y, int i, double h) {
+  const lag_model *m = s->scene->model;
+  const int nq = m->nq;
+  double e[2];
+  memcpy(s->ya, y, (size_t)s->pb.n * sizeof(double));
+  for (int j = 0; j < nq; j++) s->ya[nq + j] = s->alike[j] == s->alike[i] ? h : 0;
+  energy_at(s, t, s->ya, e);
+  return e[0];
+}
+
+/* The energies with which each search for a velocity begins: at rest, and where velocities are 1. */
+typedef struct Moving {
+  int known;
+  double rest, one;
+} Moving;
 
 /* The velocity of all coordinates with the unit of coordinate i at which they have this kinetic energy; HUGE_VAL:
  * there is none. */
-static double velocity_of(lag_sim *s, double t, const double *y, int i, double energy) {
+static double velocity_of(lag_sim *s, double t, const double *y, int i, double energy, Moving *at) {
   enum { MOST = 60 };
-  const lag_model *m = s->scene->model;
-  double rest[2], e[2], h = 1, far = 1e4;
-  int nq = m->nq;
-  memcpy(s->ya, y, (size_t)s->pb.n * sizeof(double));
-  memset(s->ya + nq, 0, (size_t)nq * sizeof(double));
-  energy_at(s, t, s->ya, rest);
+  double h = 1, far = 1e4;
+  if (!at->known) *at = (Moving){1, energy_moving(s, t, y, i, 0), energy_moving(s, t, y, i, h)};
   for (int k = 0; k < MOST; k++) {
-    for (int j = 0; j < nq; j++)
-      if (same_unit(m->q, j, i)) s->ya[nq + j] = h;
-    energy_at(s, t, s->ya, e);
-    double ratio = fabs(e[0] - rest[0]) / energy;
+    double ratio = fabs((k ? energy_moving(s, t, y, i, h) : at->one) - at->rest) / energy;
     if (ratio > 0.25 && ratio < 4) return h;
     if (ratio > 1e-3 && ratio < HUGE_VAL) h /= sqrt(ratio);
     else if (ratio <= 1e-3) h *= far;
@@ -156,10 +173,11 @@ static double energy_of_force(lag_sim *s, double t, const double *y, int i, doub
   const lag_model *m = s->scene->model;
   int nq = m->nq;
   double energy = 1, *d = s->yb;
+  Moving at = {0};
   for (int turn = 0; turn < MOST; turn++) {
-    double v = velocity_of(s, t, y, i, energy);
+    double v = velocity_of(s, t, y, i, energy, &at);
     if (!(v < HUGE_VAL)) return 0;
-    for (int j = 0; j < nq; j++) d[j] = same_unit(m->q, j, i) ? h * v : 0;
+    for (int j = 0; j < nq; j++) d[j] = s->alike[j] == s->alike[i] ? h * v : 0;
     double whole = change_of_energy(s, t, y, 0, d, e);
     for (int j = 0; j < nq; j++) d[j] /= 2;
     double half = change_of_energy(s, t, y, 0, d, e), ratio = whole / energy;
@@ -189,15 +207,15 @@ static int friction_rates(lag_sim *s, int k, double t, const double *y) {
  * balance in a step h, friction among them, and of lengths in constraints. */
 static double resting_terms(lag_sim *s, double t, const double *y, double h, double e) {
   const lag_model *m = s->scene->model;
-  double of[2], up[2], down[2];
-  double terms = lag_formula_rounding(s, LAG_FORMULA_ENERGY, t, y, of, up, down) ? 0 : of[0] / DBL_EPSILON;
+  double of = e, up[2], down[2];
+  double terms = rounding_of(s, LAG_FORMULA_ENERGY, t, y, &of, up, down) ? 0 : of / DBL_EPSILON;
   double least = 1e3 * DBL_EPSILON * fmax(fabs(e), terms), *a = s->ya;
   if (h > 0 && lag_formula_rounding(s, LAG_FORMULA_RATES, t, y, a, s->yb, s->yc) == 0) {
     for (int i = 0; i < m->nq; i++) a[i] *= h / DBL_EPSILON;
     terms += change_of_energy(s, t, y, m->nq, a, e);
   }
   for (int i = 0; i < m->nq && h > 0 && !(m->flags & LAG_FIRST_ORDER); i++)
-    terms += is_first(m, i) ? energy_of_force(s, t, y, i, h, e, least) : 0;
+    terms += s->alike[i] == i ? energy_of_force(s, t, y, i, h, e, least) : 0;
   for (int k = 0; k < m->nmodes && h > 0; k++) {
     if (!friction_rates(s, k, t, y)) continue;
     for (int i = 0; i < m->nq; i++) s->ya[m->nq + i] *= h;
@@ -236,9 +254,9 @@ void lag_velocity_terms(lag_sim *s, double t, const double *y, double h, double 
   double energy = lag_energy_terms(s, t, y, h);
   int known = energy > 0 && energy < HUGE_VAL && !(m->flags & LAG_FIRST_ORDER);
   for (int i = 0; i < m->nq; i++) {
-    if (!is_first(m, i)) continue;
-    double of = known ? velocity_of(s, t, y, i, energy) : HUGE_VAL;
-    for (int k = i; k < m->nq; k++) v[k] = same_unit(m->q, k, i) ? of : v[k];
+    if (s->alike[i] != i) continue;
+    double of = known ? velocity_of(s, t, y, i, energy, &(Moving){0}) : HUGE_VAL;
+    for (int k = i; k < m->nq; k++) v[k] = s->alike[k] == i ? of : v[k];
   }
 }
 
@@ -253,10 +271,10 @@ typedef struct Kind {
 } Kind;
 
 /* The largest |x[k]| over the n variables with the unit of variable i. */
-static double largest_of_unit(int n, const lag_var *var, const double *x, int i) {
+static double largest_of_unit(int n, const int *alike, const double *x, int i) {
   double most = 0;
   for (int k = 0; k < n; k++)
-    if (same_unit(var, k, i)) most = fmax(most, fabs(x[k]));
+    if (alike[k] == alike[i]) most = fmax(most, fabs(x[k]));
   return most;
 }
 
@@ -266,10 +284,10 @@ enum { ROUNDINGS = 1000 }; /* of a few hundred operations */
 static Kind kind_of(const lag_sim *s, const double *f, const double *bend, const double *noise, int i) {
   const lag_var *var = s->scene->model->q;
   const int nq = s->pb.nq;
-  double q = lag_component_scale(fmax(largest_of_unit(nq, var, s->now, i), DBL_MIN), var[i].periodic, var[i].unit);
-  double v = largest_of_unit(nq, var, f, i), a = largest_of_unit(nq, var, f + nq, i);
+  double q = lag_component_scale(fmax(largest_of_unit(nq, s->alike, s->now, i), DBL_MIN), var[i].periodic, var[i].unit);
+  double v = largest_of_unit(nq, s->alike, f, i), a = largest_of_unit(nq, s->alike, f + nq, i);
   int still = noise && !(v > 0) && a > 0 && a < ROUNDINGS * noise[i];
-  return (Kind){q > DBL_MIN ? q : 0, v, a, largest_of_unit(nq, var, bend + nq, i), still};
+  return (Kind){q > DBL_MIN ? q : 0, v, a, largest_of_unit(nq, s->alike, bend + nq, i), still};
 }
 
 static double reach(Kind k, double time) {
@@ -313,8 +331,8 @@ static double *acceleration_noise(lag_sim *s, double *noise) {
     return NULL;
   noise_between(s->pb.nq, noise, up, down);
   for (int i = 0; i < s->pb.nq; i++) { /* that of one coordinate alone may be 0 */
-    int first = first_of_unit(s->scene->model->q, i);
-    noise[i] = first < i ? noise[first] : largest_of_unit(s->pb.nq, s->scene->model->q, noise, i);
+    int first = s->alike[i];
+    noise[i] = first < i ? noise[first] : largest_of_unit(s->pb.nq, s->alike, noise, i);
   }
   return noise;
 }
@@ -343,19 +361,19 @@ static double coordinate_sizes(lag_sim *s, const double *f, const double *noise,
     double before = time;
     if (turn) bends(s, turn == 2 ? nq : 0, turn == 2 ? of_v : size, f, balanced, bend);
     for (int i = 0; i < nq; i++) {
-      if (!is_first(m, i)) continue;
+      if (s->alike[i] != i) continue;
       Kind k = kind_of(s, f, bend, noise, i);
       time = turn < 2 ? time_scale(k, time) : k.bend > 0 ? fmin(time, of_v[i] / k.bend) : time;
     }
     for (int i = 0; i < nq; i++) {
-      if (!is_first(m, i)) continue;
+      if (s->alike[i] != i) continue;
       Kind k = kind_of(s, f, bend, noise, i);
       double v =
           turn < 2 ? lag_above_rounding(fmax(k.v, k.a * time), k.bend * time) : fmax(k.v, of_v[i] * time / before);
       const int rests = !(k.v > 0) && !(k.a > 0);
       v = rests && v * time < 1e-12 * reach(k, time) ? 0 : v; /* rounding of forces that hold a displaced body, too */
       for (int j = nq - 1; j >= i; j--) {
-        if (!same_unit(m->q, j, i)) continue;
+        if (s->alike[j] != i) continue;
         size[j] = reach(k, time);
         of_v[j] = v;
       }
@@ -368,17 +386,16 @@ static double coordinate_sizes(lag_sim *s, const double *f, const double *noise,
  * to it. */
 static double time_from_zero(lag_sim *s, const double *f, const double *noise, double time) {
   enum { TURNS = 8 };
-  const lag_model *m = s->scene->model;
   double *bend = s->yc, *size = s->pb.size;
   for (int turn = 0; turn < TURNS; turn++) {
     double next = HUGE_VAL;
     for (int i = 0; i < s->pb.nq; i++) {
-      int first = first_of_unit(m->q, i);
+      int first = s->alike[i];
       size[i] = first < i ? size[first] : reach(kind_of(s, f, bend, NULL, i), time);
     }
     bends(s, 0, size, f, noise, bend);
     for (int i = 0; i < s->pb.nq; i++) {
-      if (!is_first(m, i)) continue;
+      if (s->alike[i] != i) continue;
       Kind k = kind_of(s, f, bend, NULL, i);
       if (size[i] > 0 && k.bend > 0) next = fmin(next, sqrt(size[i] / k.bend));
     }
@@ -394,26 +411,26 @@ static double time_from_zero(lag_sim *s, const double *f, const double *noise, d
 static void state_sizes(lag_sim *s, const double *f, double time) {
   enum { TURNS = 8 };
   const lag_model *m = s->scene->model;
-  const int at = 2 * s->pb.nq, nz = m->nz;
+  const int nq = s->pb.nq, at = 2 * nq, nz = m->nz, *alike = s->alike + nq;
   double *bend = s->yc, *size = s->pb.size + at;
   int shrinks = 0;
   for (int i = 0; i < nz; i++) {
-    int first = first_of_unit(m->z, i);
-    double z = first < i ? 0 : largest_of_unit(nz, m->z, s->now + at, i);
-    size[i] = first < i ? size[first] : z > 0 ? z : largest_of_unit(nz, m->z, f + at, i) * time;
+    int first = alike[i];
+    double z = first < i ? 0 : largest_of_unit(nz, alike, s->now + at, i);
+    size[i] = first < i ? size[first] : z > 0 ? z : largest_of_unit(nz, alike, f + at, i) * time;
     shrinks |= first == i && !(z > 0);
   }
   for (int turn = 0; turn < TURNS && shrinks; turn++) {
     shrinks = 0;
     rates_beside(s, at, nz, size, f, bend);
     for (int i = 0; i < nz; i++) {
-      int first = first_of_unit(m->z, i);
+      int first = alike[i];
       if (first < i) {
         size[i] = size[first];
         continue;
       }
-      double rate = largest_of_unit(nz, m->z, f + at, i), change = largest_of_unit(nz, m->z, bend + at, i);
-      if (largest_of_unit(nz, m->z, s->now + at, i) > 0 || !(rate > 0 && change > 2 * rate)) continue;
+      double rate = largest_of_unit(nz, alike, f + at, i), change = largest_of_unit(nz, alike, bend + at, i);
+      if (largest_of_unit(nz, alike, s->now + at, i) > 0 || !(rate > 0 && change > 2 * rate)) continue;
       size[i] *= rate / change;
       shrinks = 1;
     }
@@ -424,11 +441,10 @@ static void state_sizes(lag_sim *s, const double *f, double time) {
  * rest. */
 static void raise_rates(const lag_sim *s, const double *change, const double *noise, double *f) {
   const int nq = s->pb.nq;
-  const lag_var *var = s->scene->model->q;
   double v = 0;
   for (int i = 0; i < nq; i++) {
     double by = fabs(change[nq + i]);
-    if (i == 0 || !same_unit(var, i, i - 1)) v = largest_of_unit(nq, var, s->now + nq, i);
+    if (i == 0 || s->alike[i] != s->alike[i - 1]) v = largest_of_unit(nq, s->alike, s->now + nq, i);
     if (!(v > 0) && by > ROUNDINGS * (noise ? noise[i] : 0)) f[nq + i] = fmax(fabs(f[nq + i]), by);
   }
 }
@@ -463,15 +479,14 @@ static void raise_held(lag_sim *s, double *f) {
 static double local_time(lag_sim *s, const double *f, double *noise, double time) {
   const int nq = s->pb.nq;
   double *by = noise + s->pb.n, *bend = s->yc, least = HUGE_VAL;
-  const lag_var *var = s->scene->model->q;
   for (int i = 0; i < nq; i++) {
-    int first = first_of_unit(var, i);
-    by[i] = first < i ? by[first] : sqrt(DBL_EPSILON) * largest_of_unit(nq, var, s->now, i);
+    int first = s->alike[i];
+    by[i] = first < i ? by[first] : sqrt(DBL_EPSILON) * largest_of_unit(nq, s->alike, s->now, i);
   }
   bends(s, 0, by, f, noise, bend);
   for (int i = 0; i < nq; i++) {
-    if (first_of_unit(var, i) < i) continue;
-    double change = largest_of_unit(nq, var, bend + nq, i);
+    if (s->alike[i] < i) continue;
+    double change = largest_of_unit(nq, s->alike, bend + nq, i);
     if (by[i] > 0 && change > 0) least = fmin(least, sqrt(by[i] / change));
   }
   return least < HUGE_VAL ? least : time;
@@ -486,7 +501,7 @@ static void raise_to_rounding(lag_sim *s, const double *noise, double step) {
   const int nq = m->nq;
   double *size = s->pb.size, v = 0;
   for (int i = 0; i < nq; i++) {
-    if (i == 0 || !same_unit(m->q, i, i - 1))
+    if (i == 0 || s->alike[i] != s->alike[i - 1])
       v = noise[i] * step / s->pb.tol;
     if (!(v > 0 && v < HUGE_VAL)) continue;
     size[i] = fmax(size[i], exp2(ceil(log2(v * step))));
@@ -503,7 +518,7 @@ void lag_start_sizes(lag_sim *s) {
   drop_rounding(s, balanced, f);
   raise_held(s, f);
   memset(bend, 0, (size_t)n * sizeof *bend);
-  for (int i = 0; i < nq; i++) time = is_first(m, i) ? time_scale(kind_of(s, f, bend, noise, i), time) : time;
+  for (int i = 0; i < nq; i++) time = s->alike[i] == i ? time_scale(kind_of(s, f, bend, noise, i), time) : time;
   const double span = s->pb.span;
   time = time < HUGE_VAL ? time : time_from_zero(s, f, balanced, span > 0 ? span : 10);
   time = coordinate_sizes(s, f, noise, balanced, span > 0 ? fmin(time, span) : time);

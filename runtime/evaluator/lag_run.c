@@ -71,11 +71,19 @@ static void look(const lag_program *program) {
   if (compiled) lag_program_change_over(program, compiled);
 }
 
-/* After a step: a look at the descriptor once in 2^8 steps. */
+/* After a step: a look at the descriptor once in 2^8 steps, or in fewer that take a while. */
 static void look_for_library(const lag_program *program) {
   enum { SELDOM = 1 << 8 };
-  static unsigned steps;
-  if (compiled_fd >= 0 && ++steps % SELDOM == 0) look(program);
+  const double a_while = 0.01;
+  static unsigned steps, between = 1;
+  static clock_t before;
+  if (compiled_fd < 0 || ++steps < between) return;
+  const clock_t now = clock();
+  if ((double)(now - before) > a_while * CLOCKS_PER_SEC) between -= between / 2;
+  else if (between < SELDOM) between *= 2;
+  before = now;
+  steps = 0;
+  look(program);
 }
 
 /* Behind a run: why the compiler did not speed it up. */

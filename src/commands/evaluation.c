@@ -94,6 +94,18 @@ const char *simulator_evaluator(Compiler *c, const Toolchain *tools) {
   return compiles(c, "always") || options_more_digits(&c->o) ? NULL : toolchain_evaluator(c->arena, tools);
 }
 
+/* Whether the shortest run, with its second run and its sizes of rounding, takes longer to evaluate than to compile:
+ * programs of so many operations are loops, which vectors run. */
+static int is_long_from_start(const Units *units) {
+  const uint64_t many = 5000000; /* 200 times 5e6 operations at 0.3 ns each: a compiler takes 0.3 s */
+  uint64_t most = 0;
+  for (uint32_t i = 0; i < units->n; i++) {
+    uint64_t ops = ops_total(prog_count(units->at[i]->accel));
+    most = ops > most ? ops : most;
+  }
+  return most >= many;
+}
+
 int simulator_evaluate(Compiler *c, const Units *units, EvaluatedRun *e) {
   int never = compiles(c, "never"), digits = options_more_digits(&c->o), sweeps = c->o.command == CMD_SWEEP;
   Toolchain tools;
@@ -105,7 +117,7 @@ int simulator_evaluate(Compiler *c, const Units *units, EvaluatedRun *e) {
   const char *reason = status == STATUS_OK ? reason_to_compile(c, &tools, kind) : NULL;
   if (reason && never) return usage_error(arena_printf(c->arena, "--compile never %s", reason));
   if (reason || status != STATUS_OK) return status;
-  if (sweeps && !never && toolchain_has_compiler(c->arena, &tools)) return STATUS_OK;
+  if (!never && (sweeps || is_long_from_start(units)) && toolchain_has_compiler(c->arena, &tools)) return STATUS_OK;
   if (!never) {
     Texts texts = simulator_texts(c, units, kind);
     ModelLibrary m = library_of(c, units, &tools);

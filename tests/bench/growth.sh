@@ -33,6 +33,18 @@ kinetic = m*x'^2/2
 potential = k*x^2/2
 MODEL
     awk -v n="$n" 'BEGIN { for (i = 1; i <= n; i++) printf "scene s%d { start x = %d [m]\n span 1 [s] }\n", i, i }' ;;
+  turning) cat <<MODEL ;;
+model turning "N masses that also turn, with springs: two units"
+const N = $n
+coord x[N] [m], phi[N] [rad]
+param m = 1 [kg] > 0, k = 1 [N/m] > 0, J = 1 [kg*m^2] > 0, c = 1 [N*m] > 0
+kinetic = sum(i in 1..N, m/2*x[i]'^2 + J/2*phi[i]'^2)
+potential = sum(i in 1..N-1, k/2*(x[i+1] - x[i])^2 - c*cos(phi[i+1] - phi[i]))
+scene s {
+  start x[i in 1..N] = sin(i) [m], phi[i in 1..N] = cos(i)
+  span 1 [s]
+}
+MODEL
   outputs) cat <<MODEL ;;
 model outputs "an oscillator with N outputs"
 const N = $n
@@ -52,20 +64,21 @@ MODEL
 
 table
 # ---- lagc check, derive, noether
-# grows WHAT KIND FEW MANY [COMMAND]: slopes of the logarithms of CPU time and memory against log N. The memory for N = 1 is subtracted.
+# grows WHAT KIND FEW MANY [COMMAND [WORD...]]: slopes of the logarithms of CPU time and memory against log N. The memory for N = 4 is subtracted.
 grows() {
-  command=${5:-check}
-  grown_model "$2" 1 >"$TMP/grows.lag"
-  floor=$(kilobytes 1 "$LAGC" "$command" "$TMP/grows.lag")
-  for n in "$3" "$4"; do
-    grown_model "$2" "$n" >"$TMP/grows.lag"
-    echo "$n $(seconds 2 "$LAGC" "$command" "$TMP/grows.lag") $(kilobytes 1 "$LAGC" "$command" "$TMP/grows.lag")"
+  command=${5:-check} what=$1 kind=$2 few=$3 many=$4
+  shift $(($# < 5 ? $# : 5))
+  grown_model "$kind" 4 >"$TMP/grows.lag"
+  floor=$(kilobytes 1 "$LAGC" "$command" "$TMP/grows.lag" "$@")
+  for n in "$few" "$many"; do
+    grown_model "$kind" "$n" >"$TMP/grows.lag"
+    echo "$n $(seconds 2 "$LAGC" "$command" "$TMP/grows.lag" "$@") $(kilobytes 1 "$LAGC" "$command" "$TMP/grows.lag" "$@")"
   done >"$TMP/grown"
   slopes=$(awk -v floor="$floor" '{ n[NR] = log($1); s[NR] = log($2 + 1e-3); k[NR] = log($3 - floor + 1) }
     END { d = n[2] - n[1]; printf "%.2f %.2f", (s[2] - s[1])/d, (k[2] - k[1])/d }' "$TMP/grown")
   most=$(awk 'END { printf "%s s, %d MB", $2, $3/1024 }' "$TMP/grown")
-  row "lagc $command, $1, slope of log time against log N, $3 to $4" '<= 1.15' "$most" "${slopes% *}" '' "$(at_most "${slopes% *}" 1.15)"
-  row "lagc $command, $1, slope of log memory" '<= 1.15' '' "${slopes#* }" '' "$(at_most "${slopes#* }" 1.15)"
+  row "lagc $command, $what, slope of log time against log N, $few to $many" '<= 1.15' "$most" "${slopes% *}" '' "$(at_most "${slopes% *}" 1.15)"
+  row "lagc $command, $what, slope of log memory" '<= 1.15' '' "${slopes#* }" '' "$(at_most "${slopes#* }" 1.15)"
 }
 grows 'N rods' rods 100 800
 grows 'N bodies, a sum over all pairs,' bodies 200 2000
@@ -73,6 +86,11 @@ grows 'N scenes' scenes 1000 8000
 grows 'N outputs' outputs 10000 100000
 grows 'N bodies, a sum over all pairs,' bodies 1000 10000 derive
 grows 'N bodies, a sum over all pairs,' bodies 100 1000 noether
+export XDG_CACHE_HOME=/dev/null # no run is known
+grows 'one step of N masses that turn' turning 2000 20000 run --until 0.001 --every 0.001 --compile never -o "$TMP/grows.csv"
+grows 'two runs of N masses that turn' turning 1000 10000 sweep c=1,2 --until 0.001 --compile never -o "$TMP/grows.csv"
+grows 'N masses that turn' turning 1000 10000 header -o "$TMP/grows.h"
+unset XDG_CACHE_HOME
 
 # ---- families from 2048 members on, whose texts follow from small ones: time and memory do not depend on N
 ring_of() { cat <<MODEL; }

@@ -157,6 +157,25 @@ for model in double_pendulum lorenz slider_crank kepler stick_slip magnetic_pend
   one_of 6 && check "models/$model.lag changes over after row $row" changes_over "models/$model.lag" "$scene" "$row"
 done
 
+# A run of a few steps that take long looks for the library, too, not once in 256 steps; a wrong path shows it.
+looks_early() {
+  "$LAGC" build tests/bench/models/bodies.lag -D N=400 --bytes -o "$TMP/early.bytes" && echo /no/library >"$TMP/early" || return 1
+  LAG_PROGRAM="$TMP/early.bytes" LAG_COMPILED=5 "$BUILD/lag-run" --until 0.01 --every 0.01 --quiet -o "$TMP/early.csv" 5<"$TMP/early" 2>"$TMP/err"
+  grep 'the C compiler failed' "$TMP/err"
+}
+check "a few long steps change over" looks_early
+# Steps that take longer than the compiler are compiled before they begin.
+compiles_first() {
+  rm -rf "$XDG_CACHE_HOME"
+  mkdir -m 700 "$XDG_CACHE_HOME"
+  for how in never auto; do
+    "$LAGC" run tests/bench/models/bodies.lag -D N=700 --until 0.001 --every 0.001 --compile $how --quiet -o "$TMP/$how.csv" || return 1
+    [ $how = auto ] || find "$XDG_CACHE_HOME" -type f -delete
+  done
+  cmp "$TMP/never.csv" "$TMP/auto.csv" && sh -c "$has_library" && ! find "$XDG_CACHE_HOME" -name '*.bytes' | grep .
+}
+check "a run of long steps is compiled first, with the same bits" compiles_first
+
 # Options of CC that let sines use fused multiply-adds change nothing, either.
 if "$CC" -march=native -dM -E -x c /dev/null 2>/dev/null | grep -q __FMA__; then
   fused() { (CC="$CC -march=native" && changes_over models/double_pendulum.lag swing 50); }
