@@ -113,7 +113,7 @@ Model *compiler_model(Compiler *c, const ModelChoice *choice) {
   with_defines.defines = c->o.defines.at;
   with_defines.ndefines = c->o.defines.n;
   if (!choice->bare && !choice->unfixed) with_defines.fix = c->o.fix;
-  if (c->small) with_defines.times = c->small->times;
+  if (c->small) with_defines.times = c->small->times, with_defines.more = c->small->more;
   return model_build(c->ast, &with_defines);
 }
 

@@ -16,10 +16,11 @@ typedef enum { JSON_FACTS, JSON_SCENES, JSON_SYMMETRIES, JSON_EXPECTS, JSON_UNIT
 typedef struct KnownRun KnownRun;
 
 /* Of a compilation for a smaller size than the one asked for (commands/small_sizes.h): what it would write, and the
- * size asked for as a multiple of its own. */
+ * size asked for as a multiple of its own and less it. */
 typedef struct {
   StrBuf written;
   double times;
+  int64_t more;
 } SmallSize;
 
 typedef struct {

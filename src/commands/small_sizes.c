@@ -83,7 +83,8 @@ static int extend(const StrBuf *of, int64_t steps, StrBuf *out) {
 /* Runs the command where the size is x->n, and keeps what it writes. */
 static void run_at(Arena *scratch, void *data) {
   SmallSizes *x = data;
-  SmallSize small = {.written = x->text, .times = (double)x->size.value / (double)x->n};
+  SmallSize small = {
+      .written = x->text, .times = (double)x->size.value / (double)x->n, .more = x->size.value - x->n};
   Compiler c = *x->c;
   const Source *model = &x->c->sources->files.at[0];
   c.arena = scratch;

@@ -267,7 +267,7 @@ static Slot append_nest(NestBuilder *b, const Shares *shares, const Listed *x, c
             .near = *near, .far = x->far};
   enum { NEIGHBOURS = 32, CELLS = 300 }; /* of a row, for counts of operations */
   if (near->n) n.count = NEIGHBOURS * r->rows;
-  if (x->far.n && n.count / CELLS > r->rows) n.count = CELLS * r->rows;
+  if (x->far.n && n.count * b->l->e->m->times > (double)CELLS * r->rows) n.count = CELLS * r->rows;
   trim(&n, b->s->sampled);
   vec_push(p->arena, &p->nests, n);
   Slot before = 0;

@@ -402,7 +402,8 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   b->domains = choice->bare || choice->domains; /* claims are judged on models without a scene */
   Model *m = b->m = ARENA_NEW(a, Model);
   m->times = choice->times > 0 ? choice->times : 1;
-  b->sums_from = choice->sums_from ? choice->sums_from : 1 + (uint32_t)((SUMS_FROM - 1) / m->times);
+  b->sums_from = choice->sums_from ? choice->sums_from : SUMS_FROM;
+  b->more = choice->more;
   m->ast = ast;
   m->diags = ast->diags;
   m->arena = a;

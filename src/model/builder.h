@@ -172,6 +172,7 @@ struct Builder {
   int brackets;    /* {f, g} in an expression is a Poisson bracket */
   int domains;     /* compute Value.domain, for claims */
   uint32_t sums_from; /* sums over at least so many pairs are not written out; 0: none is */
+  int64_t more;       /* as in ModelChoice */
   InputRates *rates_wanted;
 };
 

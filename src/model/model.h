@@ -503,6 +503,7 @@ typedef struct {
   Name coordinates;
   int domains;     /* Model.domain is wanted; without a scene it always is */
   double times; /* size of families asked for, as a multiple of the model's; 0: 1. What is long is judged there */
+  int64_t more; /* and less the model's */
   uint32_t sums_from; /* sums over at least so many pairs are not written out; 0: the usual number */
   int unfixed;     /* set by callers that ignore the command line's --fix */
 } ModelChoice;

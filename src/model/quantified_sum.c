@@ -6,6 +6,9 @@
  * with its symbols in their places. Terms beside an inner sum are written out; all is, where there is no such form
  * (quantified_text.c), and a note says why. */
 #include "model/quantified_sum.h"
+
+#include <math.h>
+
 #include "sym/diff.h"
 #include "sym/sum_nest.h"
 
@@ -347,6 +350,12 @@ int64_t quantified_part(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   return may_stay(ev, id) ? quantified_same_branches(ev, id, lo, hi) : hi;
 }
 
+/* Turns in the size asked for, of which the model's are some halves and a few. */
+static double turns_asked(const Builder *b, uint64_t turns) {
+  const double n = (double)turns, more = (double)b->more;
+  return more > 0 ? n + round(2*n*(b->m->times - 1)/more)/2*more : n;
+}
+
 int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   Builder *b = ev->b;
   const AstExpr *x = ast_expr(b->ast, id);
@@ -370,7 +379,7 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   q->near = near_of(b->ast, q->inner);
   q->far = far_of(b->ast, q->inner);
   int is_listed = (b->ast->nears.n || q->far) && b->sums_from < UINT32_MAX; /* such a model is meant for any N */
-  if ((turns > guessed ? turns : guessed) < b->sums_from && !is_listed) return 0;
+  if (turns_asked(b, turns > guessed ? turns : guessed) < b->sums_from && !is_listed) return 0;
   if (q->far && !read) {
     refuse(b, q->far->span, "a tree takes a sum over pairs that stays one, and this one does not: %s" HELP
            "what a tree takes is in `lagc help tree`", q->why ? q->why : "its terms have no common form");
@@ -378,7 +387,7 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
     return -1;
   }
   if (!read || !find_pairs(q, b->arena)) {
-    if (turns < b->sums_from || may_write_out(ev, q, turns)) return 0;
+    if (turns_asked(b, turns) < b->sums_from || may_write_out(ev, q, turns)) return 0;
     *value_of(ev, id) = FAILED;
     return -1;
   }

@@ -135,12 +135,13 @@ static Expr in_own_names(const Eqns *e, Expr x) {
   return x;
 }
 
+static const char too_long[] = "(too long to print)";
 static const char *text_of(const Eqns *e, Expr x) {
   const double longest = 1e5;
   uint32_t distinct;
   StrBuf b = strbuf(e->m->arena);
   x = in_own_names(e, x);
-  if (expr_tree_size(e->g, x, &distinct) > longest) return "(too long to print)";
+  if (expr_tree_size(e->g, x, &distinct) > longest) return too_long;
   expr_print_checked(e->m, x, PRINT_TEXT, &b);
   return family_sum(e->m->arena, sb_text(&b), PRINT_TEXT);
 }
@@ -313,7 +314,7 @@ const char *charges_energy_text(const Eqns *e) {
   if (is->power_unknown) return arena_printf(e->m->arena, "%s: " NO_RATE, verdict);
   const char *power = text_of(e, is->power);
   const char *here = zero_here(e, is->power);
-  return strlen(power) <= LINE
+  return strlen(power) <= LINE && power != too_long
              ? arena_printf(e->m->arena, "%s: d%s/dt = %s%s", verdict, name, power, here)
              : arena_printf(e->m->arena, "%s; `lagc derive` prints d%s/dt%s", verdict, name, here);
 }

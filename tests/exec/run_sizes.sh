@@ -49,6 +49,17 @@ text scales 'coord w' 'param g = 1' "kinetic = sum(i in 1..N, 1/2*x[i]'^2) + k*w
 check 'emit, terms that are short enough for one line' even emit scales.lag 3935
 text band 'coord w' "kinetic = sum(i in 1..N, 1/2*x[i]'^2) + sum(i in 1..N-1, k/4*(x[i+1]' - x[i]')^2) + k*w'^2" 'potential = h*(x[31] - x[N/2])^2 - k*cos(x[3] - x[N-30])'
 check 'emit, a band of masses' even emit band.lag 5448
+# a part of the range that has 2000 terms is a sum, and one that has fewer is not
+text part "$bodies" 'potential = sum(i in 20..N-32, h*x[i]^2)'
+for size in 2050 2051 2100; do check "emit, $((size - 51)) of $size terms" even emit part.lag $size; done
+# operations of trees do not grow as those of all pairs
+text tree 'coord y[N]' "kinetic = sum(i in 1..N, k/2*(x[i]'^2 + y[i]'^2))" \
+  'potential = -sum(i in 1..N, sum(j in 1..i-1, k/sqrt((x[i] - x[j])^2 + (y[i] - y[j])^2 + h^2), by tree(0.5)))'
+check 'emit, a tree' even emit tree.lag 2500
+# the last line says where a rate of the energy stands that it does not say itself, whatever its length
+text rate 'function f(a) = if(a > 0, a^3, a^2)' "$bodies" 'potential = sum(m in 1..N, h*(x[m] - x[N + 1 - m])^2)' \
+  "dissipation = sum(i in 1..N-1, h/2*(x[i+1]' - x[i]')^2)" 'force x[i in 2..N-1] = h*(x[i+1] + x[i-1])*x[i]'
+check 'derive, a long rate of the energy' even derive rate.lag 5630
 # the charge of a sum that stays one, in the model with an effect
 text spent "$bodies" "potential = sum(i in 1..N, h*cos(x[i]))" "effect drag { dissipation = h*x[1]'^2; potential = h*x[2]^2 }" "effect slow { dissipation = h*x[1]'^2 }"
 check 'noether, an effect takes energy from sums' even noether spent.lag 2100
