@@ -155,6 +155,7 @@ static void write_step(const Header *h, const char *text) {
       {"NRESPONSES", arena_printf(h->a, "%u", band || holds ? program_set_contacts(u) * nq : c->jacobian.n)},
       {"NLOADS", arena_printf(h->a, "%u", u->guide_loads ? 3 * header_guides(u) : 0)},
       {"LOADS", u->guide_loads ? "rubs + LAG_NSLOPES" : "0"},
+      {"OTHERS", c->of.n > program_set_contacts(u) ? "1" : "0"},
       {"BANDWIDTH", arena_printf(h->a, "%u", band)},
       {"NMODES", arena_printf(h->a, "%u", meets ? 0 : u->nmodes)},
       {"FRICTION_NOTED", meets ? "friction_note" : "moreau_note"},
