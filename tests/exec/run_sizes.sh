@@ -134,4 +134,9 @@ special check 'a function of a value by the size' 'function f(a) = 1500 - a' 'pa
 special emit 'a constant with the name of an index' 'const j = 200' "kinetic = sum(i in 1..N, if(j < i and i < N/2, 1, -1)*k/2*x[i]'^2)" "$ring + sum(j in 1..3, x[j]^2)"
 special emit 'a parameter with decimals' 'param c = 0.001*N' "$bodies" "potential = sum(i in 1..N, c*x[i]^2)"
 special emit 'a length over the number' "$bodies" "potential = sum(i in 1..N, k/N*x[i]^2)"
+
+# ---- M = 3000 k - N k of x[1]: a cell of sums beside whose terms others read x[1]'
+printf '%s\n' 'model shared' 'const N = 2500' 'coord x[N]' 'param k = 1 > 0' "kinetic = 1500*k*x[1]'^2 - sum(i in 1..N, k*x[1]'^2/2) + sum(i in 2..N, x[i]'^2/2)" 'potential = sum(i in 1..N, x[i]^2/2)' >"$TMP/shared.lag"
+check 'a constant mass less a sum' says 0 '2500 coordinates; mass matrix constant, positive definite' "$LAGC" check "$TMP/shared.lag"
+check 'one that the sum cancels' says 1 'singular in every state: without inertia: `x[1]`' "$LAGC" check "$TMP/shared.lag" -D N=3000
 tap_end
