@@ -290,15 +290,13 @@ static int check_restitution(lag_sim *s, int i, double e) {
   return LAG_OK;
 }
 
-/* law: of the model's contact_laws. */
+/* law: of the model's contact_laws. Signs of coefficients: lag_check_parameters, lag_check_moving_sizes. */
 static int check_friction(lag_sim *s, int i, const double *law) {
   const lag_model *m = s->scene->model;
   int guide = lag_guide_of(m, i);
   const char *name = guide < 0 ? constraint_of(s, i - 1)->name : constraint_of(s, i)->name;
   const char *what = guide < 0 ? "contact" : "friction";
   double mu = law[3 * i], hold = guide < 0 ? law[3 * i - 3] : law[3 * m->ncontacts + 4 * guide];
-  if (!(mu >= 0))
-    return lag_fail(s, LAG_EINVAL, "the %s %s has a friction of %.3g, which must be at least 0", what, name, mu);
   if (hold >= mu) return LAG_OK;
   return lag_fail(s, LAG_EINVAL,
                   "the %s %s has a static friction of %.3g, which must be at least its friction while it slips, %.3g",

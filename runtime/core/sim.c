@@ -21,9 +21,9 @@ static int begin(lag_sim *s, double t) {
   s->run->dir = s->pb.dir = t < s->scene->t0 ? -1 : 1;
   int rc = lag_setup_start(s);
 
+  rc = rc ? rc : judge_moving_sizes(s, s->run->t, s->now);
   rc = rc ? rc : lag_contact_begin(s);
-  if (rc || t == s->scene->t0) return rc;
-  if ((rc = judge_moving_sizes(s, s->run->t, s->now)) != 0 || (rc = lag_switch_place(s)) != 0) return rc;
+  if (rc || t == s->scene->t0 || (rc = lag_switch_place(s)) != 0) return rc;
   if (!s->options && s->scene->method && strcmp(s->scene->method, s->method->name) != 0) {
     return lag_fail(
         s, LAG_EMETHOD,

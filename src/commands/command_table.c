@@ -74,7 +74,7 @@ static const CommandRow commands[] = {
      "Exit status 3: there is no action variable."},
     {CMD_RUN, "run", NULL, "MODEL [SCENE] [name=value ...] [options]", "simulate",
      "Runs the model: at once, evaluated by liblag, or by its simulator from the cache. What runs long is compiled "
-     "meanwhile, kept in the cache, and changed over to, with the same digits.\n\n"
+     "meanwhile, kept in the cache, and changed over to, with the same digits; a large model is compiled first.\n\n"
      "  name=value            a parameter, a start (th=1.2, \"th'=0.5\", th='90[deg]',\n"
      "                        th=pi/3) or an input; a bare number is in the declared\n"
      "                        unit; drag.c=0.2 for one of an effect, m=3 for a family\n"

@@ -154,6 +154,10 @@ static void write_step(const Header *h, const char *text) {
       {"NBAND", arena_printf(h->a, "%u", nq * width)},
       {"NRESPONSES", arena_printf(h->a, "%u", band || holds ? program_set_contacts(u) * nq : c->jacobian.n)},
       {"NLOADS", arena_printf(h->a, "%u", u->guide_loads ? 3 * header_guides(u) : 0)},
+      {"NMOVING", arena_printf(h->a, "%u", u->nmoving)},
+      {"OF_NOW", u->u.n ? ", now[LAG_NU]" : ""},
+      {"AT_STATE", arena_printf(h->a, "s->t%s%s, p%s", u->q.n ? ", s->q, s->v" : "", u->z.n ? ", s->z" : "",
+                                u->u.n ? ", lag_held(p, s->t, u, input, context, now)" : "")},
       {"LOADS", u->guide_loads ? "rubs + LAG_NSLOPES" : "0"},
       {"OTHERS", c->of.n > program_set_contacts(u) ? "1" : "0"},
       {"BANDWIDTH", arena_printf(h->a, "%u", band)},
@@ -172,6 +176,7 @@ static void write_step(const Header *h, const char *text) {
                                 {'g', guides},
                                 {'r', guides && !meets},
                                 {'w', !meets && holds && u->u.n},
+                                {'s', u->moving_sizes != NULL},
                                 {0, 0}};
   header_template(h, header_chosen(h, text, choices), words);
 }
@@ -181,5 +186,6 @@ void header_moreau_declare(const Header *h) { write_step(h, prototypes); }
 void header_moreau_define(const Header *h) {
   if (program_set_contacts(h->u)) define_contacts(h);
   else header_friction_define(h);
+  if (h->u->moving_sizes) header_internal_function(h, h->u->moving_sizes, "moving_sizes", NULL, "LAG_REAL *out", NULL);
   write_step(h, whole_step);
 }

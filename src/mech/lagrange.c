@@ -322,20 +322,37 @@ static int system_at(const Eqns *e, const Expr *entries, const long double *symb
   return finite;
 }
 
+/* Whether each row of M, or column of A but for contacts, has an entry; null: a coordinate without. */
+static int has_all_rows(const Eqns *e, long double *null) {
+  const Constraints *k = &e->constraints;
+  const Model *m = e->m;
+  Arena *a = m->arena;
+  uint8_t *moved = ARENA_ARRAY(a, uint8_t, e->n + 1), *opens = ARENA_ARRAY(a, uint8_t, m->constraints.n + 1);
+  for (uint32_t i = 0; i < m->contacts.n; i++) opens[m->contacts.at[i].constraint] = 1;
+  for (uint32_t i = 0; i < e->mass.n; i++) moved[e->mass.at[i].row] = moved[e->mass.at[i].col] = 1;
+  for (uint32_t i = 0; i < k->A.n; i++)
+    if (!opens[k->of[k->A.at[i].row] - m->constraints.at]) moved[k->A.at[i].col] = 1;
+  for (uint32_t i = 0; i < e->n; i++)
+    if (!moved[i]) return null[i] = 1, 0;
+  return 1;
+}
+
 /* A determinant that is not identically zero vanishes at a random state with probability zero. Large matrices are
- * judged in the run, by their factorization. */
+ * judged by their empty rows, and in the run, by their factorization. */
 int lagrange_check_mass(Eqns *e) {
   enum { LARGEST = 200 };
   uint32_t n = e->n;
-  if (n == 0 || n > LARGEST || !e->mass_known) return 1;
+  if (n == 0 || !e->mass_known) return 1;
   Arena *arena = e->m->arena;
+  long double *null = ARENA_ARRAY(arena, long double, n);
+  if (n > LARGEST && has_all_rows(e, null)) return 1;
+  if (n > LARGEST) return report_singular(e, null), 0;
   const Entries *A = &e->constraints.A;
   uint32_t m = e->constraints.n, roots = e->mass.n + A->n;
   Expr *entries = ARENA_ARRAY(arena, Expr, roots + 1);
   for (uint32_t k = 0; k < roots; k++) entries[k] = k < e->mass.n ? e->mass.at[k].e : A->at[k - e->mass.n].e;
   long double *symbols = ARENA_ARRAY(arena, long double, expr_symbol_count(e->g) + 1),
               *values = ARENA_ARRAY(arena, long double, roots + 1);
-  long double *null = ARENA_ARRAY(arena, long double, n);
   SparseElements M = {0}, all = {0};
   int judged = 0;
   for (uint32_t seed = 1; seed <= TRIES; seed++) {
@@ -347,6 +364,5 @@ int lagrange_check_mass(Eqns *e) {
     judged = 1;
   }
   if (!judged) return 1; /* all tries lay outside the model's domain: left to the run */
-  report_singular(e, null);
-  return 0;
+  return report_singular(e, null), 0;
 }

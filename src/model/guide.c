@@ -134,7 +134,7 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Dim dim, Conta
   if (!t->hold || !same_force(t, &held))
     return diag_error(b->diags, ast_expr(b->ast, most)->span,
                       "static friction follows the same force as friction: `static = mu_s*abs(lambda(rail))`");
-  if (expr_is_constant(b->g, t->friction)) add_size(b, t->friction, "this friction has a coefficient", span, 0);
+  add_size(b, t->friction, "this friction has a coefficient", span, 0);
   if (most) add_static_limit(b, t->hold, t->friction, ast_expr(b->ast, most)->span);
   return 1;
 }

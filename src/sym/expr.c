@@ -16,6 +16,7 @@ ExprGraph *expr_graph(Arena *a, Interner *names) {
   ExprGraph *g = ARENA_NEW(a, ExprGraph);
   g->arena = a;
   g->names = names;
+  g->share_kinds_at = expr_map(a);
   g->seen = expr_map_by_id(a);
   g->work = expr_map_by_id(a);
   g->live = expr_map_by_id(a);

@@ -169,7 +169,7 @@ Name expr_def_name(const ExprGraph *g, Expr e);        /* of a DEF; its body is 
 ExprSign expr_sign(const ExprGraph *g, Expr e);
 int expr_is_nonzero(const ExprGraph *g, Expr e); /* a number or an expression of strict sign that is not 0 */
 int expr_is_num(const ExprGraph *g, Expr e);
-unsigned expr_kinds(const ExprGraph *g, Expr e); /* kinds of the symbols in e, as bits 1 << SymKind */
+unsigned expr_kinds(const ExprGraph *g, Expr e); /* kinds of the symbols on which e depends, as bits 1 << SymKind */
 
 /* Traits of a node and all below: an operation that overflows where its argument is moderate; a power that may be
  * negative. */

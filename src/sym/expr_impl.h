@@ -47,6 +47,8 @@ struct ExprGraph {
   VEC(SumNest) nests;        /* number k at [k - 1] */
   Expr twin_of, twin;        /* the last nest that expr_twin_cell was asked for, and its answer */
   uint32_t twin_number;
+  ExprMap share_kinds_at;    /* of a NEST: 1 + place of the kinds of its first share in share_kinds */
+  VEC(uint16_t) share_kinds;
   Expr *by_arg;              /* [nby_arg] 0 between calls of expr_sum_partials */
   uint32_t nby_arg;
   VEC(SymId) index_names;    /* symbols with names such as r[i].x, for the printer */

@@ -5,9 +5,49 @@
 
 /* --- construction and access --- */
 
+/* Appends the kinds of symbols on which each share of a nest depends: those of the arguments that it reads. */
+static void add_share_kinds(ExprGraph *g, Expr nest) {
+  const SumNest s = *expr_sum_nest(g, nest);
+  unsigned *of = ARENA_ARRAY(g->arena, unsigned, s.nreads + 1);
+  for (uint32_t r = 0; r < s.nreads; r++) {
+    int64_t lo, hi, step = subscript_step(&s.reads[r].at);
+    if (!loop_extent(&s.range, &s.reads[r].at, &lo, &hi)) continue;
+    for (int64_t k = lo; k <= hi; k += step ? step : 1) of[r] |= expr_kinds(g, expr_sum_arg(g, nest, (uint32_t)k));
+  }
+  expr_map_set(&g->share_kinds_at, nest, g->share_kinds.n + 1);
+  for (uint32_t i = 0; i < s.nshares; i++) {
+    unsigned kinds = 0;
+    for (uint32_t r = 0; r < s.nreads; r++)
+      if (of[r] & ~kinds && expr_contains_sym(g, s.shares[i].value, s.reads[r].symbol)) kinds |= of[r];
+    vec_push(g->arena, &g->share_kinds, (uint16_t)kinds);
+  }
+}
+
+/* Of the shares that add to the cell, where a nest has several. */
+static unsigned cell_kinds(ExprGraph *g, Expr nest, int64_t cell) {
+  const SumNest *s = expr_sum_nest(g, nest);
+  unsigned kinds = 0, all = expr_kinds(g, nest);
+  if (s->nshares < 2) return all;
+  if (!expr_map_get(&g->share_kinds_at, nest)) add_share_kinds(g, nest);
+  const uint16_t *of = g->share_kinds.at + expr_map_get(&g->share_kinds_at, nest) - 1;
+  for (uint32_t k = 0; k < s->nshares && kinds != all; k++) {
+    int64_t lo, hi, step = subscript_step(&s->shares[k].at);
+    if (loop_extent(&s->range, &s->shares[k].at, &lo, &hi) && cell >= lo && cell <= hi && !(step && (cell - lo) % step))
+      kinds |= of[k];
+  }
+  return kinds;
+}
+
+static Expr make_cell(ExprGraph *g, const Expr *both) {
+  const uint32_t known = g->nodes.n;
+  Expr e = expr_make(g, EX_CELL, both, 2);
+  if (e == known) g->nodes.at[e].kinds = (uint16_t)cell_kinds(g, both[0], expr_number(g, both[1]).num);
+  return e;
+}
+
 Expr expr_cell_of(ExprGraph *g, Expr nest, uint32_t cell) {
   Expr both[2] = {nest, expr_int(g, cell)};
-  return expr_make(g, EX_CELL, both, 2);
+  return make_cell(g, both);
 }
 
 static int same_subscript(const Subscript *x, const Subscript *y) {
@@ -109,7 +149,7 @@ Expr expr_cell_rebuilt(ExprGraph *g, const Expr *args) {
   const SumNest *s = expr_sum_nest(g, args[0]);
   int some = 0;
   for (uint32_t k = 0; k < s->nshares; k++) some |= s->shares[k].value != g->zero;
-  return some ? expr_make(g, EX_CELL, args, 2) : g->zero;
+  return some ? make_cell(g, args) : g->zero;
 }
 
 Expr expr_twin_cell(ExprGraph *g, Expr nest, uint32_t number, uint32_t cell) {

@@ -458,7 +458,16 @@ begins() { # FRICTION: a bead on a rail at x = 2
   printf '%s\n' 'model bead; coord x, y' "lagrangian = (x'^2 + y'^2)/2 - 9.81*y" 'constraint rail: y = 0' "friction rub on x: $1" "scene s { start x = 2, x' = 6; span 1 }" >"$TMP/bead.lag"
   "$LAGC" run "$TMP/bead.lag"
 }
-check "a negative coefficient" says 2 'the friction rub.slip has a friction of -1, which must be at least 0' begins '(1 - x)*abs(lambda(rail))'
+check "a negative coefficient" says 2 'this friction has a coefficient of -1, which must be at least 0: it is 1 - x' begins '(1 - x)*abs(lambda(rail))'
 check "a static one below that while it slips" says 2 'the friction rub.slip has a static friction of 0.1, which must be at least its friction while it slips, 0.3' begins '0.3*abs(lambda(rail)), static = (x - 1.9)*abs(lambda(rail))'
+
+# ---- and on the way: x = 1 - cosh(k t) + 6 sinh(k t)/k, k^2 = 9.81, passes 1 at t = atanh(k/6)/k = 0.18489, where x' = sqrt(36 - k^2)
+printf '%s\n' 'model worn; coord x, y' "lagrangian = (x'^2 + y'^2)/2 - 9.81*y" 'constraint rail: y = 0' 'friction rub on x: (1 - x)*abs(lambda(rail))' "scene s { start x' = 6; span 1 }" >"$TMP/worn.lag"
+for method in rk4 moreau; do
+  check "a coefficient that becomes negative, $method" says 3 'at t = 0.185 s this friction has a coefficient of -0.0005' "$LAGC" run "$TMP/worn.lag" --quiet --method "$method(step = 1e-3)"
+done
+for method in dop853 radau; do
+  check "the same, $method" says 3 'which must be at least 0: it is 1 - x' "$LAGC" run "$TMP/worn.lag" --quiet --method $method
+done
 
 tap_end

@@ -303,4 +303,27 @@ force y = -1 [N]*y'/hypot(x', y')
 scene s { start x' = 1 [m/s]; span 2 [s] }
 END_OF
 check "a direction in a plane" says 2 'dry friction along coordinates, and not against the direction of a velocity' "$LAGC" header "$TMP/puck2.lag" --with moreau -o "$TMP/none.h"
+
+# ---- frictions that become negative: of a rail where 1 - x does, x = 1 at t = 0.18489 (run_guides), and 0.3 N of N = 20 - 15 t, beyond 4/3
+printf '%s\n' 'model worn; coord x, y' "lagrangian = (x'^2 + y'^2)/2 - 9.81*y" 'constraint rail: y = 0' 'friction rub on x: (1 - x)*abs(lambda(rail))' "scene s { start x' = 6 }" >"$TMP/worn.lag"
+printf '%s\n' 'model push; coord x; input N = 20' "kinetic = x'^2" 'friction f on x: 0.3*N' "scene s { start x' = 9; N = 20 - 15*t }" >"$TMP/push.lag"
+ends() { # MODEL STEP LAST: the last state before the friction is negative
+  "$LAGC" header "$TMP/$1.lag" --with moreau --prefix in_c -o "$TMP/$1.h" && cat >"$TMP/ends.c" <<END_OF
+#define IN_C_IMPLEMENTATION
+#include "$1.h"
+int main(void) {
+  in_c_params p;
+  in_c_state s;
+  int status = 0, steps = 0;
+  in_c_defaults(&p);
+  in_c_start(&p, &s);
+  while (steps < 1000 && (status = in_c_moreau_step(&p, &s, $2, 0)) == IN_C_OK) steps++;
+  return !(status == IN_C_ESIZE && fabs(s.t - $3) < 1e-9);
+}
+END_OF
+  "$CC" -std=c99 -O0 "$TMP/ends.c" -lm -o "$TMP/ends" && "$TMP/ends"
+}
+check "the friction of a guide becomes negative" ends worn 1e-3 0.184
+check "a friction that follows an input" ends push 1e-2 1.33
+
 tap_end
