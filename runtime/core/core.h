@@ -31,6 +31,7 @@ typedef struct Run {
   /* steps of equal size: period estimates made; estimates shorter than two steps; the last such period [s] */
   double looks, coarse, period;
   double stall_since;    /* time when the stall detector last judged the pace of steps */
+  double creeps;         /* how often in a row they hardly advanced it */
   /* largest energy change in one step, and its time; replaced only by a change more than twice as large */
   double energy_jump, energy_jump_t;
   /* condition of the mass matrix at energy_jump_t, and the coordinate of least inertia */

@@ -11,7 +11,7 @@
  *   makes steps shrink in front of it, accepted one by one, for ever. So do places where a constraint or a force jumps
  *   with the position. Criterion: MOST steps advanced the time by less than 1e-5 of the run so far, at less than 1e-2
  *   of its mean pace (a fast event, as a stiff spring that is struck, takes some hundred steps); and there is one of
- *   these causes. The same of 1000 restarts, by events, contacts, impacts and switches, whatever the cause: these
+ *   these causes. Ten times in a row where it is the mass matrix: light bodies may pass such a place. The same of 1000 restarts, by events, contacts, impacts and switches, whatever the cause: these
  *   would go on for ever.
  * 3. Equal steps longer than half a period: an implicit method keeps the energy of such an oscillation, and nothing
  *   else of it. The square of the frequency is estimated along a step as -(change of acceleration).(change of
@@ -139,17 +139,19 @@ int lag_restarts_stall(lag_sim *s, double *led) {
 
 /* Criterion 2: shrinking steps. */
 LAG_RARE int check_pace(lag_sim *s, double t) {
+  enum { IN_A_ROW = 10 };
   const double dependent = 1e-2;
   Run *r = s->run;
   lag_problem *pb = &s->pb;
   double led;
   int k = -1, which;
   char line[32];
-  if (!crawls(s, &r->stall_since, t, MOST, r->steps, &led) || lag_equal_step(s) > 0) return 0;
+  r->creeps = crawls(s, &r->stall_since, t, MOST, r->steps, &led) ? r->creeps + 1 : 0;
+  if (!r->creeps || lag_equal_step(s) > 0) return 0;
   if (s->method->flags & LAG_METHOD_IMPULSES) return 0; /* its steps have a least size */
   double apart = pb->model->constraints ? lag_independence(pb, t, s->y, &k) : 1;
   int redundant = k >= 0 && apart <= dependent;
-  if (!redundant && !(pb->model->flags & LAG_FIRST_ORDER) &&
+  if (!redundant && !(pb->model->flags & LAG_FIRST_ORDER) && r->creeps >= IN_A_ROW &&
       lag_mass_condition(pb, t, s->y, &which) > lag_sim_tolerance(s) / DBL_EPSILON) {
     return lag_note(pb, LAG_ESTEP, t,
                     "the last %d steps advanced the time by only %.3g s: accelerations have fewer digits here than the "

@@ -65,7 +65,7 @@ for m in models/*.lag; do
   case $m in */cam_follower.lag | */dominoes.lag | */drum_brake.lag | */gripper.lag | */painleve_rod.lag | */rocking_block.lag | */sliding_ball.lag | */sliding_off.lag | */tower.lag | */wheel_bar.lag | */woodpecker.lag) continue ;; esac
   has_header "$m" || continue
   "$LAGC" header "$m" | grep -q '_hold(' || continue
-  "$LAGC" emit "$m" | grep -q 'nmodes\|ntables' && continue
+  "$LAGC" emit "$m" | grep -q 'nmodes\|ntables\|nguides' && continue
   for method in rk4 rk45 dop853; do
     case "$m $method" in "models/slider_crank.lag rk45") ;; *) one_of 40 || continue ;; esac
     check "$(basename "$m" .lag), on its constraints: $method" digits "$m" $method
