@@ -147,7 +147,7 @@ LAG_RARE int check_pace(lag_sim *s, double t) {
   int k = -1, which;
   char line[32];
   r->creeps = crawls(s, &r->stall_since, t, MOST, r->steps, &led) ? r->creeps + 1 : 0;
-  if (!r->creeps || lag_equal_step(s) > 0) return 0;
+  if (r->creeps < 1 || lag_equal_step(s) > 0) return 0;
   if (s->method->flags & LAG_METHOD_IMPULSES) return 0; /* its steps have a least size */
   double apart = pb->model->constraints ? lag_independence(pb, t, s->y, &k) : 1;
   int redundant = k >= 0 && apart <= dependent;
