@@ -11,8 +11,8 @@
  *   makes steps shrink in front of it, accepted one by one, for ever. So do places where a constraint or a force jumps
  *   with the position. Criterion: MOST steps advanced the time by less than 1e-5 of the run so far, at less than 1e-2
  *   of its mean pace (a fast event, as a stiff spring that is struck, takes some hundred steps); and there is one of
- *   these causes. Ten times in a row where it is the mass matrix: light bodies may pass such a place. The same of 1000 restarts, by events, contacts, impacts and switches, whatever the cause: these
- *   would go on for ever.
+ *   these causes. Ten times in a row where it is the mass matrix: light bodies may pass such a place. The same of 1000
+ *   restarts, by events, contacts, impacts and switches, whatever the cause: these would go on for ever.
  * 3. Equal steps longer than half a period: an implicit method keeps the energy of such an oscillation, and nothing
  *   else of it. The square of the frequency is estimated along a step as -(change of acceleration).(change of
  *   position)/|change of position|^2. It does not end the run; the report mentions it. */
