@@ -114,7 +114,7 @@ model/resolve_name.c|s/expr_diff(b->g, b->m->lagrangian, v)/expr_diff(b->g, b->m
 self_check/tape_partial.c|s/level ? known(p, i.a, level - 1) : 0/0/
 self_check/tape_partial.c|s/da ? tape_op(t, TAPE_RATE, da, 0, 0) : 0/0/
 self_check/tape_partial.c|s/"log") == 0) return quotient/"log") == 0) return product/
-self_check/tape_partial.c|s/num_sub(i.number, num_int(1))/i.number/
+self_check/tape_partial.c|s/num_sub(power, num_int(1))/power/
 self_check/tape_partial.c|s/return db ? sum(t, base,/return db ? sum(t, 0,/
 self_check/tape_partial.c|s/return chosen(t, i.a, db, dc)/return chosen(t, i.a, dc, db)/
 self_check/tape_partial.c|s/negative(t, product(t, i.a, db))),/product(t, i.a, db)),/
