@@ -118,6 +118,15 @@ typedef struct {
   int missing;
 } InputRates;
 
+/* A sum in a statement of a family (family_sums.c): row i - lo of a nest is member i's; rows 0: all members have the
+ * same; value.e 0: it has no such form. */
+typedef struct {
+  AstId sum;
+  Value value;
+  int64_t lo;
+  LoopRange range;
+} FamilySum;
+
 typedef struct Builder Builder;
 struct Builder {
   Ast *ast;
@@ -131,7 +140,8 @@ struct Builder {
   Rotations rotations;
   VEC(SpinStart) spins; /* start values of angular velocities */
   Scope *named; /* names of events, constraints and expectations; NULL: none yet */
-  IndexVars index; /* indices of the `for` around the current statement */
+  IndexVars index; /* indices of the `for` around the current statement, and the range of the innermost */
+  int64_t for_range[2];
   int index_symbols; /* 1: they stand for themselves, as symbols */
   VEC(struct Eval *) idle; /* free list of evaluations */
   VEC(Expr) scratch;
@@ -174,6 +184,7 @@ struct Builder {
   uint32_t sums_from; /* sums over at least so many pairs are not written out; 0: none is */
   int64_t more;       /* as in ModelChoice */
   InputRates *rates_wanted;
+  VEC(FamilySum) family_sums;
 };
 
 /* Evaluates an expression of the text; after an error, reported, the value has e = 0. */

@@ -26,6 +26,7 @@ typedef struct {
   IndexVar index[2]; /* indices of a family member; name NULL: a number in the text */
   const IndexVar *around; /* observables only: indices of the enclosing `for` */
   uint32_t naround;
+  int64_t range[2]; /* of the only index; both 0: not known */
   int composed; /* a function of functions.def that is defined by its text */
 } Definition;
 

@@ -153,6 +153,7 @@ static void declare_let_family(Builder *b, const AstStmt *st, Name effect) {
   }
   uint32_t family = family_of(b, st, effect, ENT_LET, &r);
   Definition d = {.stmt = st, .effect = effect};
+  if (r.n == 1) d.range[0] = r.lo[0], d.range[1] = r.hi[0];
   for (int64_t i = r.lo[0]; family && i <= r.hi[0]; i++)
     for (int64_t j = r.lo[1]; j <= (r.n > 1 ? r.hi[1] : 0); j++) {
       int64_t at[2] = {i, j};
@@ -195,7 +196,8 @@ static void add_observe(Builder *b, const AstStmt *st, Name effect, Name name) {
   IndexVar *around = ARENA_ARRAY(b->arena, IndexVar, b->index.n + 1);
   if (b->index.n) memcpy(around, b->index.at, b->index.n * sizeof *around);
   add_definition(b, ENT_OBSERVE,
-                 (Definition){.stmt = st, .name = name, .effect = effect, .around = around, .naround = b->index.n});
+                 (Definition){.stmt = st, .name = name, .effect = effect, .around = around, .naround = b->index.n,
+                              .range = {b->for_range[0], b->for_range[1]}});
 }
 
 static void declare_observe(Builder *b, const AstStmt *st, Name effect) {

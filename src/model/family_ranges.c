@@ -33,13 +33,16 @@ int resolve_indices(Builder *b, AstId list, Name effect, IndexRange *out) {
 static void each_in_for(Builder *b, const AstStmt *st, Name effect, StatementFn *fn, void *data) {
   int64_t from, to;
   if (!resolve_range(b, st->lhs, st->rhs, effect, &from, &to)) return;
+  const int64_t outer[2] = {b->for_range[0], b->for_range[1]};
   uint32_t errors = b->diags->errors, place = b->index.n;
+  b->for_range[0] = from, b->for_range[1] = to;
   vec_push(b->arena, &b->index, ((IndexVar){st->name, from}));
   for (int64_t i = from; i <= to && b->diags->errors == errors; i++) {
     b->index.at[place].at = i;
     for (const AstStmt *s = st->body; s; s = s->next) each_statement(b, s, effect, fn, data);
   }
   b->index.n = place;
+  memcpy(b->for_range, outer, sizeof outer);
 }
 
 /* Recursion is bounded by the parser's limit on nested blocks. */

@@ -349,11 +349,12 @@ typedef struct {
 enum { FAMILY_VALUES = 6 };
 
 /* A sum, or a part of its range lo .. hi, that is not written out. beside: its outer terms have more than the inner
- * sum; sampled: the self-check takes a sample of its turns. */
+ * sum; sampled: the self-check takes a sample of its turns; family: the index of members lo .. hi whose sum it is. */
 typedef struct {
   AstId outer;
   int beside, sampled;
   int64_t lo, hi;
+  Name family;
 } QuantifiedSum;
 
 typedef struct {

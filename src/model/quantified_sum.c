@@ -32,7 +32,7 @@ int quantified_tells_apart(const struct Quantified *q, const int64_t *pair) {
 }
 
 /* Two pairs of the last rows that differ in both indices, or in the only one that has two values. */
-static int find_pairs(struct Quantified *q, Arena *arena) {
+int quantified_find_pairs(struct Quantified *q, Arena *arena) {
   enum { TRIED = 12 };
   VEC(int64_t) at = {0};
   int64_t rows = (int64_t)q->range.rows;
@@ -223,12 +223,12 @@ static int same_for_both(const Arguments *a, Expr first, Expr second) {
 static Expr sum_over(const Arguments *a, Expr body, const FarForm *far, int sampled) {
   const struct Quantified *q = a->q;
   NestShare *share = ARENA_NEW(a->arena, NestShare);
-  share->value = body;
+  *share = (NestShare){body, {.by_row = quantified_of_family(q)}};
   NearTest *near = q->near ? ARENA_NEW(a->arena, NearTest) : NULL;
   if (near) *near = q->test;
   SumNest s = {.range = q->range, .near = near, .far = far, .reads = a->reads.at, .nreads = a->reads.n, .shares = share,
                .nshares = 1,
-               .nargs = a->args.n, .ncells = 1, .sampled = sampled, .i = q->i, .j = q->j, .i0 = q->lo,
+               .nargs = a->args.n, .ncells = quantified_of_family(q) ? q->range.rows : 1, .sampled = sampled, .i = q->i, .j = q->j, .i0 = q->lo,
                .j0 = q->from.first + q->from.by_i * q->lo, .row = q->pair[0][0] - q->lo,
                .turn = q->inner ? q->pair[0][1] - q->from.first - q->from.by_i * q->lo : 0};
   return expr_sum_cell(a->g, &s, a->args.at, 0);
@@ -293,7 +293,7 @@ static int has_many_turns(const struct Quantified *q, uint64_t turns) {
 }
 
 /* Says that a long sum is written out, and why; refuses it where no expansion takes so many terms. */
-static int may_write_out(const Eval *ev, const struct Quantified *q, uint64_t turns) {
+int quantified_write_out(const Eval *ev, const struct Quantified *q, uint64_t turns) {
   enum { TERM_KB = 4 }; /* of a short term: potential of a pair, in a plane */
   static const char help[] = "a sum whose terms read families at indices such as `i`, `j`, `i+1` stays a sum, "
                              "whatever N is: `lagc help families`";
@@ -301,7 +301,7 @@ static int may_write_out(const Eval *ev, const struct Quantified *q, uint64_t tu
   const char *sum = ast_short(b, q->outer), *why = q->why ? q->why : "its terms have no common form";
   Span span = ast_expr(b->ast, q->where ? q->where : q->outer)->span;
   if (b->diags->errors) return 1;
-  if (turns > RANGE_MAX) {
+  if (turns > RANGE_MAX && !quantified_of_family(q)) {
     refuse(b, span, "`%s` would be written out, %llu terms, and lagc takes %d: %s" HELP "%s", sum,
            (unsigned long long)turns, RANGE_MAX, why, help);
     return 0;
@@ -311,26 +311,26 @@ static int may_write_out(const Eval *ev, const struct Quantified *q, uint64_t tu
   return 1;
 }
 
-static const AstNear *near_of(const Ast *ast, AstId sum) {
+const AstNear *quantified_near(const Ast *ast, AstId sum) {
   for (uint32_t k = 0; k < ast->nears.n; k++)
     if (sum && ast->nears.at[k].sum == sum) return &ast->nears.at[k];
   return NULL;
 }
 
-static const AstFar *far_of(const Ast *ast, AstId sum) {
+const AstFar *quantified_far_sum(const Ast *ast, AstId sum) {
   for (uint32_t k = 0; k < ast->fars.n; k++)
     if (sum && ast->fars.at[k].sum == sum) return &ast->fars.at[k];
   return NULL;
 }
 
 int quantified_fits(Eval *ev, AstId id) {
-  const AstFar *far = far_of(ev->b->ast, id);
+  const AstFar *far = quantified_far_sum(ev->b->ast, id);
   if (far && !ev->index.n) {
     refuse(ev->b, far->span, "a tree takes sums over pairs, and there is no sum around this one" HELP
            "write `sum(i in 1..N, sum(j in 1..i-1, ..., by tree(0.5)))`; in a potential it gives all forces");
     return 0;
   }
-  const AstNear *near = near_of(ev->b->ast, id);
+  const AstNear *near = quantified_near(ev->b->ast, id);
   for (uint32_t k = 0; near && k < ev->index.n; k++)
     if (ev->index.at[k].name == near->i) return 1;
   if (!near) return 1;
@@ -340,20 +340,49 @@ int quantified_fits(Eval *ev, AstId id) {
   return 0;
 }
 
+/* Whether the sum names an index of the `for` around the statement. */
+static int names_index(const Eval *ev, AstId id) {
+  const Builder *b = ev->b;
+  for (uint32_t k = ev->in_statement ? b->index.n : 0; k-- > 0;)
+    if (quantified_names(b->ast, id, b->index.at[k].name)) return 1;
+  return 0;
+}
+
 /* Whether the sum is tried as one: in no other sum or product; the index of a definition is a number in it. */
 static int may_stay(const Eval *ev, AstId id) {
-  return ast_expr(ev->b->ast, id)->kind == AST_SUM && !ev->sums && !ev->loops.n &&
-         !(ev->in_statement && ev->b->index.n) && !ev->function && ev->written_out != id && ev->b->sums_from;
+  return ast_expr(ev->b->ast, id)->kind == AST_SUM && !ev->sums && !ev->loops.n && !ev->function &&
+         ev->written_out != id && ev->b->sums_from && !names_index(ev, id);
 }
 
 int64_t quantified_part(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   return may_stay(ev, id) ? quantified_same_branches(ev, id, lo, hi) : hi;
 }
 
-/* Turns in the size asked for, of which the model's are some halves and a few. */
-static double turns_asked(const Builder *b, uint64_t turns) {
+/* Of turns in the size asked for, of which the model's are some halves and a few. */
+int quantified_is_long(const Builder *b, uint64_t turns) {
   const double n = (double)turns, more = (double)b->more;
-  return more > 0 ? n + round(2*n*(b->m->times - 1)/more)/2*more : n;
+  return (more > 0 ? n + round(2*n*(b->m->times - 1)/more)/2*more : n) >= b->sums_from;
+}
+
+/* Takes the pair q->pass. */
+static void take_pair(Eval *ev, const struct Quantified *q) {
+  const int of_family = quantified_of_family(q);
+  Loop *l = &ev->loops.at[ev->loops.n - 1];
+  IndexVar *last = &ev->index.at[ev->index.n - 1];
+  l->at = l->hi = last->at = q->pair[q->pass][of_family];
+  if (of_family) last[-1].at = q->pair[q->pass][0];
+}
+
+void quantified_start(Eval *ev, struct Quantified *q) {
+  Builder *b = ev->b;
+  Name name = ast_expr(b->ast, q->outer)->name;
+  q->sampled = has_many_turns(q, q->turns);
+  for (int k = 0; k < COMPONENTS; k++) q->inside[k] = expr_declare(b->g, SYM_LOCAL, 0, name, SIGN_UNKNOWN);
+  ev->sums = q;
+  vec_push(b->arena, &ev->loops, ((Loop){q->outer, 0, 0, ev->terms.n, 0, 0}));
+  if (quantified_of_family(q)) vec_push(b->arena, &ev->index, ((IndexVar){q->i, 0}));
+  vec_push(b->arena, &ev->index, ((IndexVar){name, 0}));
+  take_pair(ev, q);
 }
 
 int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
@@ -376,33 +405,29 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   uint64_t turns = 0;
   for (uint32_t row = 0; row < q->range.rows; row++) turns += (uint64_t)loop_turns(&q->range, row);
   uint64_t guessed = !read && q->inner ? (uint64_t)q->range.rows * q->range.rows / 2 : 0; /* unknown range inside */
-  q->near = near_of(b->ast, q->inner);
-  q->far = far_of(b->ast, q->inner);
+  q->near = quantified_near(b->ast, q->inner);
+  q->far = quantified_far_sum(b->ast, q->inner);
   int is_listed = (b->ast->nears.n || q->far) && b->sums_from < UINT32_MAX; /* such a model is meant for any N */
-  if (turns_asked(b, turns > guessed ? turns : guessed) < b->sums_from && !is_listed) return 0;
+  if (!quantified_is_long(b, turns > guessed ? turns : guessed) && !is_listed) return 0;
   if (q->far && !read) {
     refuse(b, q->far->span, "a tree takes a sum over pairs that stays one, and this one does not: %s" HELP
            "what a tree takes is in `lagc help tree`", q->why ? q->why : "its terms have no common form");
     *value_of(ev, id) = FAILED;
     return -1;
   }
-  if (!read || !find_pairs(q, b->arena)) {
-    if (turns_asked(b, turns) < b->sums_from || may_write_out(ev, q, turns)) return 0;
+  if (!read || !quantified_find_pairs(q, b->arena)) {
+    if (!quantified_is_long(b, turns) || quantified_write_out(ev, q, turns)) return 0;
     *value_of(ev, id) = FAILED;
     return -1;
   }
   q->turns = turns;
-  q->sampled = has_many_turns(q, turns);
-  for (int k = 0; k < COMPONENTS; k++) q->inside[k] = expr_declare(b->g, SYM_LOCAL, 0, x->name, SIGN_UNKNOWN);
-  ev->sums = q;
-  vec_push(b->arena, &ev->loops, ((Loop){id, q->pair[0][0], q->pair[0][0], ev->terms.n, 0, 0}));
-  vec_push(b->arena, &ev->index, ((IndexVar){x->name, q->pair[0][0]}));
+  quantified_start(ev, q);
   return 1;
 }
 
 int quantified_judge(Eval *ev, AstId id) {
   Builder *b = ev->b;
-  const AstNear *x = near_of(b->ast, id);
+  const AstNear *x = quantified_near(b->ast, id);
   if (!x) return 1;
   Expr cut = value_of(ev, x->cut)->e;
   int still = cut && expr_is_constant(b->g, cut);
@@ -466,17 +491,20 @@ int quantified_next(Eval *ev, Value *v) {
   if (!q->inner) q->body[q->pass] = *v;
   int failed = !v->e || !q->body[q->pass].e;
   if (!failed && ++q->pass < REPRESENTATIVES) {
-    l->at = l->hi = ev->index.at[ev->index.n - 1].at = q->pair[q->pass][0];
+    take_pair(ev, q);
     return 1;
   }
   ev->sums = NULL;
+  const int of_family = quantified_of_family(q);
+  if (of_family) ev->index.at[ev->index.n - 2] = ev->index.at[ev->index.n - 1], ev->index.n--;
   if (failed) return 0;
   Value r = *v;
   if (q->far && !far_angle(ev, q)) q->failed = 1, r.e = 0;
   for (uint32_t c = 0; c < component_count(v) && r.e; c++)
     if (!(r.at[c] = component_sum(ev, q, c))) r.e = 0;
   if (q->failed) return *v = FAILED, 0;
-  if (r.e) vec_push(b->arena, &b->m->sums, ((QuantifiedSum){q->outer, q->beside, q->sampled, q->lo, q->hi}));
+  if (r.e) vec_push(b->arena, &b->m->sums, ((QuantifiedSum){q->outer, q->beside, q->sampled, q->lo, q->hi, of_family ? q->i : NULL}));
+  if (of_family) family_sum_end(ev, q, &r);
   if (r.e && !q->beside) {
     *v = r;
     return 0;
@@ -486,9 +514,9 @@ int quantified_next(Eval *ev, Value *v) {
     ev->sums = q;
   } else {
     ev->written_out = q->outer;
-    if (!may_write_out(ev, q, q->turns)) return *v = FAILED, 0;
+    if (!quantified_write_out(ev, q, q->turns)) return *v = FAILED, 0;
   }
-  l->at = ev->index.at[ev->index.n - 1].at = q->lo;
-  l->hi = q->hi;
+  l->at = ev->index.at[ev->index.n - 1].at = of_family ? q->own[0] : q->lo;
+  l->hi = of_family ? q->own[1] : q->hi;
   return 1;
 }

@@ -18,9 +18,10 @@ typedef struct {
 } Read;
 
 struct Quantified {
-  AstId outer, inner; /* inner 0: a sum over i alone, which has one turn a row */
+  AstId outer, inner; /* inner 0: a sum over i alone, which has one turn a row; inner = outer: i is a family's index */
   Name i, j;
   int64_t lo, hi;     /* of i */
+  int64_t at, own[2]; /* of a family: the member in progress, and the range of its sum */
   Affine from, to;    /* of j, in i */
   LoopRange range;    /* row 0 is i = lo; turn j of row 0 is j - from */
   VEC(Read) reads;
@@ -48,6 +49,9 @@ struct Quantified {
 /* quantified_text.c: finds the inner sum, and all that the terms read; 0: the text has no such form. */
 int quantified_text(Eval *ev, struct Quantified *q);
 
+/* Whether the expression contains the name. */
+int quantified_names(const Ast *ast, AstId id, Name name);
+
 /* The last index from lo on up to which each `if` in the terms of a sum takes one branch, those of lets, too. */
 int64_t quantified_same_branches(Eval *ev, AstId id, int64_t lo, int64_t hi);
 
@@ -67,6 +71,22 @@ int quantified_is_plain(const Symbol *s);
 /* far_form.c: the parts of a term, for the first pair, of a sum by a tree; NULL: it has no such form, which is
  * reported. */
 const FarForm *quantified_far(Eval *ev, const struct Quantified *q, Expr term);
+
+/* Whether row after row is the sum of one member of a family. family_sums.c: ends such a sum, of which *v is cell 0, or
+ * has no value, with that of the member in progress. */
+static inline int quantified_of_family(const struct Quantified *q) { return q->inner == q->outer; }
+void family_sum_end(Eval *ev, const struct Quantified *q, Value *v);
+
+/* quantified_sum.c: finds the representatives; starts the first. What stands at `near` or `by tree` in a sum; NULL. */
+int quantified_find_pairs(struct Quantified *q, Arena *arena);
+void quantified_start(Eval *ev, struct Quantified *q);
+const AstNear *quantified_near(const Ast *ast, AstId sum);
+const AstFar *quantified_far_sum(const Ast *ast, AstId sum);
+
+/* quantified_sum.c: whether so many turns are too many to be written out; says that the sum is, and why: 0: no expansion
+ * takes so many. */
+int quantified_is_long(const Builder *b, uint64_t turns);
+int quantified_write_out(const Eval *ev, const struct Quantified *q, uint64_t turns);
 
 /* In rows and turns: i = lo + row, j = from(lo) + turn. */
 Subscript quantified_turns(const struct Quantified *q, Affine x);

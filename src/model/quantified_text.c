@@ -312,6 +312,12 @@ static int note_reads(Eval *ev, struct Quantified *q, AstId first, AstId last, c
   return 1;
 }
 
+int quantified_names(const Ast *ast, AstId id, Name name) {
+  for (AstId k = ast_expr(ast, id)->first; k <= id; k++)
+    if (ast_expr(ast, k)->kind == AST_NAME && ast_expr(ast, k)->name == name) return 1;
+  return 0;
+}
+
 /* The statement of the family of lets that the node reads at indices affine in i and j; NULL: it reads none. */
 static const AstStmt *let_read(Eval *ev, AstId id, const Indices *of, Affine *at) {
   const Ast *ast = ev->b->ast;
@@ -413,8 +419,9 @@ int quantified_text(Eval *ev, struct Quantified *q) {
   const Ast *ast = ev->b->ast;
   const AstExpr *x = ast_expr(ast, q->outer);
   AstId last = x->c;
+  const int of_family = quantified_of_family(q);
   q->first = ast_expr(ast, last)->first;
-  q->i = x->name;
+  if (!of_family) q->i = x->name;
   q->range = (LoopRange){.rows = (uint32_t)(q->hi - q->lo + 1), .turns = 1};
   unsigned char *skip = ARENA_ARRAY(ev->b->arena, unsigned char, last - q->first + 1);
   q->counts = ARENA_ARRAY(ev->b->arena, unsigned char, last - q->first + 1);
@@ -425,7 +432,7 @@ int quantified_text(Eval *ev, struct Quantified *q) {
     if (kind == AST_PRODUCT) return refused(q, k, "there is a product over an index inside");
     if (kind == AST_AT || kind == AST_LIST || kind == AST_BIND || kind == AST_STRING) return 0;
   }
-  if (q->inner && !read_inner(ev, q, skip)) return 0;
+  if (of_family ? !quantified_range(ev, q, x->a, x->b) : q->inner && !read_inner(ev, q, skip)) return 0;
   const Indices own = {.name = {q->i, q->j}, .is = {{.by_i = 1}, {.by_j = 1}}, .lo = q->lo, .hi = q->hi, .in_sum = 1};
   return note_reads(ev, q, q->first, last, &own, skip, MOST_DEPTH);
 }

@@ -167,6 +167,11 @@ int64_t quantified_part(Eval *ev, AstId id, int64_t lo, int64_t hi);
 int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi);
 int quantified_next(Eval *ev, Value *v);
 
+/* family_sums.c: starts the sum in a statement of a family as one nest for all members, as quantified_begin does; keeps
+ * the value of a sum or product that all members have. */
+int family_sum_begin(Eval *ev, AstId id, int64_t lo, int64_t hi);
+void family_sum_keep(const Eval *ev, AstId id, const Value *v);
+
 /* Whether the name of an index stands for its symbol there, as all turns have one body. */
 int quantified_counts(const Eval *ev, const AstExpr *name);
 

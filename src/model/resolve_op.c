@@ -338,7 +338,9 @@ int loop_begin(Eval *ev, AstId id) {
     *r = a_value(expr_int(b->g, x->kind == AST_PRODUCT), x->kind == AST_PRODUCT ? DIM_NONE : DIM_ANY, 1);
     return 0;
   }
-  return range_fits(b, lo, hi, x->span) && quantified_fits(ev, id) && begin_part(ev, id, lo, hi);
+  if (!range_fits(b, lo, hi, x->span) || !quantified_fits(ev, id)) return 0;
+  int of_family = family_sum_begin(ev, id, lo, hi);
+  return of_family ? of_family > 0 : begin_part(ev, id, lo, hi);
 }
 
 /* Shape and dimension of sum(...) or product(...) from its terms, and whether it is bare; 0, reported, when terms
@@ -422,5 +424,6 @@ int loop_next(Eval *ev) {
   int good = v.e && !more;
   *value_of(ev, done.construct) = good ? terms_value(ev, ev->terms.at + done.base, ev->terms.n - done.base, x) : FAILED;
   ev->terms.n = done.base;
+  family_sum_keep(ev, done.construct, value_of(ev, done.construct));
   return 0;
 }

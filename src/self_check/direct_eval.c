@@ -100,13 +100,25 @@ static void finish(DirectEval *t, Frame *f, Frame *caller) {
 static const QuantifiedSum *sampled_part(const DirectEval *t, AstId id, int64_t at) {
   for (uint32_t k = 0; t->samples && k < t->m->sums.n; k++) {
     const QuantifiedSum *s = &t->m->sums.at[k];
-    if (s->outer == id && s->sampled && at >= s->lo && at <= s->hi) return s;
+    if (s->outer == id && s->sampled && !s->family && at >= s->lo && at <= s->hi) return s;
   }
   return NULL;
 }
 
 static int takes_row(const QuantifiedSum *s, int64_t at) {
   return !s || loop_samples(at - s->lo, s->hi - s->lo + 1);
+}
+
+/* The sum that each member of a family has, of which only some terms of some members take part, and the member in
+ * progress; NULL: it is none. */
+static const QuantifiedSum *sampled_rows(const DirectEval *t, const Frame *f, AstId id, int64_t *at) {
+  for (uint32_t k = 0; t->samples && k < t->m->sums.n; k++) {
+    const QuantifiedSum *s = &t->m->sums.at[k];
+    if (s->outer != id || !s->sampled || !s->family) continue;
+    for (uint32_t i = f->index.n; i-- > 0;)
+      if (f->index.at[i].name == s->family) return *at = f->index.at[i].at, s;
+  }
+  return NULL;
 }
 
 /* Next index of the loop; past its end: none. */
@@ -130,8 +142,9 @@ static int loop_enter(DirectEval *t, Frame *f, AstId id) {
   *r = number_of(t, num_int(x->kind == AST_PRODUCT));
   if (lo > hi) return 0;
   const TextLoop *around = f->loops.n ? &f->loops.at[f->loops.n - 1] : NULL;
-  const QuantifiedSum *s = around ? sampled_part(t, around->construct, around->at) : NULL;
-  if (!takes_row(s, around ? around->at : 0)) return 0; /* a row with terms beside its inner sum */
+  int64_t row = around ? around->at : 0;
+  const QuantifiedSum *s = around ? sampled_part(t, around->construct, row) : sampled_rows(t, f, id, &row);
+  if (!takes_row(s, row)) return 0; /* of a member, or with terms beside its inner sum */
   TextLoop l = {.construct = id, .lo = lo, .at = lo, .hi = hi, .inner = s != NULL};
   vec_push(t->arena, &f->loops, l);
   vec_push(t->arena, &f->index, ((IndexVar){x->name, lo}));

@@ -78,19 +78,26 @@ static void make_slopes(ExprGraph *g, Expr cell) {
   g->nests.at[number - 1].slopes = d;
 }
 
-/* Makes the derivatives of sums below the roots; cells that would have too many are written out. */
-static void prepare_sums(ExprGraph *g, const Expr *roots, uint32_t n, int forward, Expr *out) {
+/* Makes the derivatives of sums; those that would have too many cells are written out in the roots. */
+static void prepare_sums(ExprGraph *g, const Expr *cells, uint32_t ncells, int forward, Expr *roots, uint32_t n) {
   VEC(Expr) several = {0};
-  ExprList l = g->nests.n ? expr_topo(g, roots, n) : (ExprList){0};
-  for (uint32_t k = 0; k < l.n; k++) {
-    if (expr_op(g, l.at[k]) != EX_CELL) continue;
-    make_slopes(g, l.at[k]);
-    if (!expr_prepare_sum(g, l.at[k], forward)) vec_push(g->arena, &several, l.at[k]);
+  for (uint32_t k = 0; k < ncells; k++) {
+    make_slopes(g, cells[k]);
+    if (!expr_prepare_sum(g, cells[k], forward)) vec_push(g->arena, &several, cells[k]);
   }
-  if (l.at) expr_list_free(g, l);
   for (uint32_t k = 0; k < several.n; k++)
     g->writes_sums_out |= expr_sum_nest(g, expr_cell_nest(g, several.at[k]))->sampled;
-  expr_write_out(g, roots, n, several.at, several.n, out);
+  expr_write_out(g, roots, n, several.at, several.n, roots);
+}
+
+/* Prepares all sums below the roots for rates. */
+static void prepare_rates(ExprGraph *g, Expr *roots, uint32_t n) {
+  VEC(Expr) cells = {0};
+  ExprList l = g->nests.n ? expr_topo(g, roots, n) : (ExprList){0};
+  for (uint32_t k = 0; k < l.n; k++)
+    if (expr_op(g, l.at[k]) == EX_CELL) vec_push(g->arena, &cells, l.at[k]);
+  if (l.at) expr_list_free(g, l);
+  prepare_sums(g, cells.at, cells.n, 1, roots, n);
 }
 
 static Expr partial_binary(ExprGraph *g, Expr e, uint32_t i) {
@@ -251,7 +258,8 @@ static void tangent_terms(ExprGraph *g, Expr e, ExprMap *dot, Terms *terms) {
 void expr_tangent(ExprGraph *g, const Expr *of, uint32_t n, ExprSeeds seed, const char *suffix, ExprMap *known,
                   Expr *out) {
   Expr *roots = ARENA_ARRAY(g->arena, Expr, n + 1);
-  prepare_sums(g, of, n, 1, roots);
+  if (n) memcpy(roots, of, n * sizeof *of);
+  prepare_rates(g, roots, n);
   ExprList l = expr_topo_until(g, roots, n, known);
   ExprMap *dot = &g->work; /* node -> its tangent; absent: zero */
   expr_map_clear(dot);
@@ -336,9 +344,21 @@ static int is_wanted(const Symbol *s, const void *data) {
   return s->kind == w->kind && s->index < w->below;
 }
 
+/* Prepares the sums in e that contain a wanted symbol. */
+static void prepare_partials(ExprGraph *g, Expr *e, const Wanted *w) {
+  VEC(Expr) cells = {0};
+  if (!g->nests.n) return;
+  ExprList l = expr_topo(g, e, 1);
+  expr_mark_containing(g, l, is_wanted, w, &g->live);
+  for (uint32_t k = 0; k < l.n; k++)
+    if (expr_op(g, l.at[k]) == EX_CELL && expr_map_get(&g->live, l.at[k])) vec_push(g->arena, &cells, l.at[k]);
+  expr_list_free(g, l);
+  prepare_sums(g, cells.at, cells.n, 0, e, 1);
+}
+
 /* Reverse sweep: adjoints of all nodes of e that contain a wanted symbol; *l: the nodes of e. */
 static Adjoints sweep(ExprGraph *g, Expr e, const Wanted *w, ExprList *l) {
-  prepare_sums(g, &e, 1, 0, &e);
+  prepare_partials(g, &e, w);
   *l = expr_topo(g, &e, 1);
   ExprMap *live = &g->live;
   expr_mark_containing(g, *l, is_wanted, w, live);

@@ -198,6 +198,13 @@ ExprList expr_topo_with_bodies(ExprGraph *g, const Expr *roots, uint32_t n) {
 /* Whether a turn adds to cell k: an equation affine in i and j. */
 static int adds_to(const NestShare *x, int64_t k, int64_t i, int64_t j) { return subscript_at(&x->at, i, j) == k; }
 
+/* Whether some turn of row i may add to cell k. */
+static int row_adds_to(const SumNest *s, int64_t k, int64_t i) {
+  for (uint32_t n = 0; n < s->nshares; n++)
+    if (s->shares[n].at.by_turn || adds_to(&s->shares[n], k, i, 0)) return 1;
+  return 0;
+}
+
 /* A nest whose turns are written out: its arguments, and room for what a turn replaces. */
 typedef struct {
   SumNest nest;
@@ -223,7 +230,7 @@ static Expr written_out(ExprGraph *g, Expr cell) {
   for (uint32_t n = 0; n < s.nargs; n++) w.args[n] = expr_sum_arg(g, nest, n);
   g->terms.n = 0;
   for (int64_t i = 0; i < s.range.rows; i++)
-    for (int64_t j = loop_from(&s.range, i); j < loop_to(&s.range, i); j++)
+    for (int64_t j = loop_from(&s.range, i); row_adds_to(&s, k, i) && j < loop_to(&s.range, i); j++)
       for (uint32_t n = 0; n < s.nshares; n++)
         if (adds_to(&s.shares[n], k, i, j)) add_turn(g, &w, &s.shares[n], i, j);
   return expr_add_n(g, g->terms.at, g->terms.n);

@@ -3,6 +3,7 @@
 
 #include "symmetry/charges.h"
 #include "mech/discontinuity.h"
+#include "sym/family_rows.h"
 #include "sym/prove.h"
 #include "sym/sum_nest.h"
 
@@ -36,9 +37,8 @@ static Indices noether_cyclic(const Eqns *e) {
 }
 
 /* Whether p_i is conserved. Where there are many coordinates a force or constraint on them counts as a change. */
-static Verdict drift_of_momentum(const Eqns *e, uint32_t i) {
-  int pushed = !expr_is_zero(e->g, e->Q[i]);
-  for (uint32_t k = 0; k < e->constraints.A.n; k++) pushed |= e->constraints.A.at[k].col == i;
+static Verdict drift_of_momentum(const Eqns *e, const unsigned char *held, uint32_t i) {
+  int pushed = held[i] || !expr_is_zero(e->g, e->Q[i]);
   return !pushed ? PROVED_ZERO : e->n > PROVE_MOST ? NOT_DECIDED : noether_prove(e, shift(e, i)).drift;
 }
 
@@ -48,12 +48,16 @@ void show_cyclic(const Eqns *e, const char *before, StrBuf *out) {
     [PROVED_ZERO] = "is conserved", [PROVED_NONZERO] = "is changed by forces and constraints alone",
     [NOT_DECIDED] = "can be changed by forces and constraints alone"};
   Indices all = noether_cyclic(e);
+  StrBuf lines = strbuf(e->m->arena);
+  unsigned char *held = ARENA_ARRAY(e->m->arena, unsigned char, e->n + 1); /* by constraints */
+  for (uint32_t k = 0; k < e->constraints.A.n; k++) held[e->constraints.A.at[k].col] = 1;
   for (uint32_t k = 0; k < all.n; k++) {
     Name x = e->m->coords.at[all.at[k]].name;
     const char *jumps = discontinuities_of(e, eqns_momenta(e)[all.at[k]]).n ? " between jumps" : "";
-    const char *is = words[drift_of_momentum(e, all.at[k])];
-    sb_printf(out, "%scyclic coordinate: %s; L does not contain it, and p_%s %s%s\n", before, x, x, is, jumps);
+    const char *is = words[drift_of_momentum(e, held, all.at[k])];
+    sb_printf(&lines, "%scyclic coordinate: %s; L does not contain it, and p_%s %s%s\n", before, x, x, is, jumps);
   }
+  sb_puts(out, family_rows(e->m->arena, sb_text(&lines), PRINT_TEXT));
 }
 
 /* --- the report --- */

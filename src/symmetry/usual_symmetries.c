@@ -91,8 +91,12 @@ static void try_turn(TrialWork *w, uint32_t axis) {
             (FoundSymmetry){.kind = SYMMETRY_ROTATION, .name = name, .of_all = 1, .axis = axis});
 }
 
-static void try_cyclic(TrialWork *w) {
-  for (uint32_t i = 0; i < w->n && w->e->n; i++) {
+/* The momentum of each cyclic coordinate; 0: they are too many to be listed one by one. */
+static int try_cyclic(TrialWork *w) {
+  enum { LISTED_MOST = 100 };
+  uint32_t cyclic = 0;
+  for (uint32_t i = 0; i < w->n && w->e->n; i++) cyclic += (uint32_t)expr_is_zero(w->g, w->e->dLdq[i]);
+  for (uint32_t i = 0; i < w->n && w->e->n && cyclic <= LISTED_MOST; i++) {
     if (!expr_is_zero(w->g, w->e->dLdq[i])) continue;
     Expr *xi = zero_components(w);
     xi[i] = expr_int(w->g, 1);
@@ -101,6 +105,7 @@ static void try_cyclic(TrialWork *w) {
                             .name = arena_printf(w->e->m->arena, "momentum of %s", name_of(w, i)),
                             .axis = AXIS_NONE});
   }
+  return cyclic <= LISTED_MOST;
 }
 
 /* A scaling that keeps the action, and the expansion beside it where coordinates scale by the root of time. */
@@ -128,13 +133,15 @@ void try_usual_symmetries(Eqns *e, FoundSymmetries *out, SearchLimit *limit) {
                  .names = coordinate_names(e), .out = out,
                  .limit = limit};
   search_stage(limit, 0.8, "the usual symmetries");
-  out->ansatz = "for more than a hundred coordinates members of a family move alike: the energy, momenta of cyclic "
-                "coordinates, and translations, boosts, rotations, scalings and expansions of all coordinates of "
-                "a kind together";
   out->searched = 1;
   try_one(&w, zero_components(&w), expr_int(e->g, -1),
           (FoundSymmetry){.kind = SYMMETRY_ENERGY, .name = "energy", .axis = AXIS_NONE});
-  try_cyclic(&w);
+  out->ansatz = try_cyclic(&w) ? "for more than a hundred coordinates members of a family move alike: the energy, "
+                                 "momenta of cyclic coordinates, and translations, boosts, rotations, scalings and "
+                                 "expansions of all coordinates of a kind together"
+                               : "for more than a hundred coordinates members of a family move alike: the energy, "
+                                 "and translations, boosts, rotations, scalings and expansions of all coordinates of "
+                                 "a kind together; the momenta of cyclic coordinates are those above";
   try_kinds(&w);
   for (uint32_t axis = 0; axis < 3; axis++) try_turn(&w, axis);
   try_scaling(&w);

@@ -84,6 +84,21 @@ static const char *const texts[] = {
     /* a range that moves and grows; the first two rows are empty */
     "const N = %d\ncoord x[2*N]\nlagrangian = sum(i in 1..2*N, x[i]'^2/2) -\n"
     "  sum(i in 1..N, sum(j in i+1..2*i-2, cos(x[i] - 2*x[j])))",
+    /* forces of families: full rows, rows that grow from nothing, a sum that is the same for all, indices as numbers */
+    "const N = %d\ncoord x[N], y[N]\nparam k[N] = 1 > 0, c = 0.2\n"
+    "kinetic = sum(i in 1..N, k[i]*x[i]'^2/2 + y[i]'^2)\n"
+    "for i in 1..N {\n  force x[i] = k[i]/N*sum(j in 1..N, sin(x[j] - x[i])*(1 + y[j]')) - c*x[i]'\n"
+    "  force y[i] = sum(j in 1..i-1, i*x[j]^2/(1 + (i - j)^2)) + sum(j in 1..N, c*x[j]*k[j])\n}",
+    /* of vectors with velocities, conditions on both indices, a let by index inside; two forces on one body */
+    BODIES "let d[i in 1..N] = e[i]*r[i].x\nfor i in 1..N {\n"
+    "  force r[i] = sum(j in 1..N, if(i == j, 0, if(i < 3, 1, soft))*(r[j]' - r[i]')/(1 + " APART ")^2)\n"
+    "  force r[i] = e[i]*sum(j in i..N, d[j]*(r[i] - r[j])) - sum(j in i-1..i+1, if(j > 0 and j <= N, j*d[i], 0))*(0, 1)"
+    "\n}\nfor i in 2..N-1 { force r[i] = sum(j in i-1..i+1, K[i,j]*r[j]) }",
+    /* flows, and lets of families of which a force, a flow and an output read members */
+    "const N = %d\ncoord x[N]\nstate z[N]\nparam w[N] = 1\nkinetic = sum(i in 1..N, x[i]'^2/2)\n"
+    "let F[i in 1..N] = sum(j in 1..N, w[j]*sin(x[j] - z[i]))\nlet G[i in 1..N] = F[i]*w[i]\n"
+    "for i in 1..N {\n  force x[i] = F[i] - sum(j in 1..N, G[j])*x[i]\n"
+    "  flow z[i]' = w[i] + sum(j in i..N, sin(z[j] - z[i])*x[i])\n}\nobserve f[i in 1..N] = sum(j in 1..N, (z[i]*x[j])^2)",
 };
 
 /* The equations of a text for n bodies; sums from so many pairs on are nodes. */
