@@ -151,7 +151,7 @@ static int run_nest(Run *r, const Nest *n) {
     int samples = r->samples && n->text_rows;
     if (samples && !loop_samples(i + n->first_row, n->text_rows)) continue;
     for (int64_t j = from; j < from + turns; j++) {
-      if (samples && !loop_samples(j - from, turns)) continue;
+      if (samples && !loop_samples(j - from, n->text_turns ? n->text_turns : turns)) continue;
       if (run_turn(&body, r, n, i, j) != 0) return -1;
       add_stores(r, &body, n, part, i, j);
     }

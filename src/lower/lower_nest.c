@@ -8,6 +8,7 @@ typedef struct {
   Lower *l;
   const SumNest *s;
   Expr nest;
+  int half; /* s takes the pairs of its nest once: nest_half */
   Lower body;
   VEC(IrSubscript) at;
   VEC(Slot) outer;
@@ -224,7 +225,7 @@ typedef struct {
 } Listed;
 
 /* Leaves out the first and the last rows, which have no turns. sampled: the self-check takes a sample of the turns. */
-static void trim(Nest *n, int sampled) {
+static void trim(Nest *n, int sampled, int half) {
   uint32_t first = 0, end = n->rows;
   while (first < end && nest_to(n, first) <= nest_from(n, first)) first++;
   while (end > first && nest_to(n, end - 1) <= nest_from(n, end - 1)) end--;
@@ -232,6 +233,7 @@ static void trim(Nest *n, int sampled) {
   for (uint32_t k = 0; k < n->n; k++) at[k].first += first * (at[k].by_row + at[k].by_turn * n->skew);
   n->turns += n->more * first;
   if (sampled) n->text_rows = n->rows;
+  if (sampled && half) n->text_turns = n->rows;
   n->first_row = first;
   n->rows = end - first;
 }
@@ -268,7 +270,7 @@ static Slot append_nest(NestBuilder *b, const Shares *shares, const Listed *x, c
   enum { NEIGHBOURS = 32, CELLS = 300 }; /* of a row, for counts of operations */
   if (near->n) n.count = NEIGHBOURS * r->rows;
   if (x->far.n && n.count * b->l->e->m->times > (double)CELLS * r->rows) n.count = CELLS * r->rows;
-  trim(&n, b->s->sampled);
+  trim(&n, b->s->sampled, b->half);
   vec_push(p->arena, &p->nests, n);
   Slot before = 0;
   for (Slot s = p->ins.n; s-- > 1 && !before;)
@@ -432,7 +434,8 @@ static int lower_as_nest(NestBuilder *b, const Expr *cells, uint32_t n) {
 
 void lower_nest(Lower *l, Expr nest, const ExprList *list) {
   ExprGraph *g = l->g;
-  NestBuilder b = {.l = l, .s = expr_sum_nest(g, nest), .nest = nest};
+  const SumNest *half = nest_half(g, nest);
+  NestBuilder b = {.l = l, .s = half ? half : expr_sum_nest(g, nest), .nest = nest, .half = half != NULL};
   VEC(Expr) cells = {0};
   for (uint32_t k = 0; k < list->n; k++)
     if (expr_op(g, list->at[k]) == EX_CELL && expr_cell_nest(g, list->at[k]) == nest &&

@@ -29,7 +29,8 @@ static Value member_sum(const Builder *b, const FamilySum *s, int64_t at) {
   const int64_t row = at - s->lo;
   for (uint32_t k = 0; k < component_count(&v) && s->range.rows; k++) {
     if (expr_op(b->g, v.at[k]) != EX_CELL) continue;
-    v.at[k] = loop_turns(&s->range, row) ? expr_cell_of(b->g, expr_cell_nest(b->g, v.at[k]), (uint32_t)row)
+    const uint32_t cell = (uint32_t)row * component_count(&v) + k;
+    v.at[k] = loop_turns(&s->range, row) ? expr_cell_of(b->g, expr_cell_nest(b->g, v.at[k]), cell)
                                          : expr_int(b->g, 0);
   }
   return v;

@@ -189,13 +189,20 @@ static int switches_suddenly(ExprGraph *g, Expr e) {
          expr_kinds(g, e) & (1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_RATE);
 }
 
+/* Whether an expression that has the symbol is among those before. */
+static int is_read(const Arguments *a, SymId symbol) {
+  vec_each(const NestRead, r, a->reads)
+    if (r->symbol == symbol) return 1;
+  return 0;
+}
+
 /* The arguments of an expression in the symbols of the first pair; 0: it has others, or sums. */
 static int find_arguments(Arguments *a, Expr e) {
   ExprList l = expr_topo(a->g, &e, 1);
   for (uint32_t k = 0; k < l.n; k++) {
     if (expr_op(a->g, l.at[k]) == EX_CELL) a->why = "it contains another sum over many terms";
     if (switches_suddenly(a->g, l.at[k])) a->why = "runs locate each of its switches by velocities";
-    if (expr_op(a->g, l.at[k]) == EX_SYM && !add_symbol(a, l.at[k]))
+    if (expr_op(a->g, l.at[k]) == EX_SYM && !is_read(a, expr_sym_id(a->g, l.at[k])) && !add_symbol(a, l.at[k]))
       a->why = arena_printf(a->arena, "`%s` is no member at indices of this sum", expr_sym_of(a->g, l.at[k])->name);
     if (a->why) return 0;
   }
@@ -219,19 +226,42 @@ static int same_for_both(const Arguments *a, Expr first, Expr second) {
 
 /* --- the sum --- */
 
-/* Sum of `body` over all turns, one cell. Where turns are as many as members, the self-check takes all. */
-static Expr sum_over(const Arguments *a, Expr body, const FarForm *far, int sampled) {
+/* The sums over all turns, value c in cell c; of a family, in cell c of each row. The nest of cell 0 is that of all.
+ * Where turns are as many as members, the self-check takes all. */
+static Expr sums_over(const Arguments *a, const Expr *values, uint32_t n, const FarForm *far, int sampled) {
   const struct Quantified *q = a->q;
-  NestShare *share = ARENA_NEW(a->arena, NestShare);
-  *share = (NestShare){body, {.by_row = quantified_of_family(q)}};
+  const int of_family = quantified_of_family(q);
+  NestShare *shares = ARENA_ARRAY(a->arena, NestShare, n + 1);
+  for (uint32_t c = 0; c < n; c++) shares[c] = (NestShare){values[c], {c, of_family ? (int64_t)n : 0, 0}};
   NearTest *near = q->near ? ARENA_NEW(a->arena, NearTest) : NULL;
   if (near) *near = q->test;
-  SumNest s = {.range = q->range, .near = near, .far = far, .reads = a->reads.at, .nreads = a->reads.n, .shares = share,
-               .nshares = 1,
-               .nargs = a->args.n, .ncells = quantified_of_family(q) ? q->range.rows : 1, .sampled = sampled, .i = q->i, .j = q->j, .i0 = q->lo,
+  SumNest s = {.range = q->range, .near = near, .far = far, .reads = a->reads.at, .nreads = a->reads.n,
+               .shares = shares, .nshares = n, .nargs = a->args.n, .ncells = of_family ? n * q->range.rows : n,
+               .sampled = sampled, .i = q->i, .j = q->j, .i0 = q->lo,
                .j0 = q->from.first + q->from.by_i * q->lo, .row = q->pair[0][0] - q->lo,
                .turn = q->inner ? q->pair[0][1] - q->from.first - q->from.by_i * q->lo : 0};
   return expr_sum_cell(a->g, &s, a->args.at, 0);
+}
+
+/* The components of a family's sum, as those of the first member; 0: it has no such form. */
+static int family_components(const Eval *ev, struct Quantified *q, Value *r) {
+  Builder *b = ev->b;
+  Arguments a = {.g = b->g, .m = b->m, .q = q, .arena = b->arena, .names = b->ast->names};
+  const uint32_t n = component_count(&q->body[0]);
+  Expr turned[REPRESENTATIVES][COMPONENTS];
+  q->why = "its terms differ by more than the members that they read";
+  if (n > COMPONENTS || n != component_count(&q->body[1])) return 0;
+  for (uint32_t c = 0; c < n; c++) {
+    for (int k = 0; k < REPRESENTATIVES; k++)
+      turned[k][c] = q->has_lets ? expr_expand_defs(b->g, q->body[k].at[c]) : q->body[k].at[c];
+    if (!find_arguments(&a, turned[0][c])) return q->why = a.why, 0;
+  }
+  for (uint32_t c = 0; c < n; c++)
+    if (!same_for_both(&a, turned[0][c], turned[1][c])) return 0;
+  Expr first = sums_over(&a, turned[0], n, NULL, q->sampled);
+  for (uint32_t c = 0; c < n; c++)
+    r->at[c] = expr_is_zero(b->g, turned[0][c]) ? turned[0][c] : expr_cell_of(b->g, expr_cell_nest(b->g, first), c);
+  return 1;
 }
 
 /* Component c of the sum over pairs: the factor of the inner sum, which must be linear in the whole, times the inner
@@ -264,7 +294,7 @@ static Expr component_sum(Eval *ev, struct Quantified *q, uint32_t c) {
   if (expr_is_zero(g, turned[0])) return turned[0];
   const FarForm *far = q->far ? quantified_far(ev, q, turned[0]) : NULL;
   q->failed = q->far && !far;
-  return q->failed ? 0 : sum_over(&a, turned[0], far, q->sampled);
+  return q->failed ? 0 : sums_over(&a, turned, 1, far, q->sampled);
 }
 
 /* --- the loops --- */
@@ -500,10 +530,12 @@ int quantified_next(Eval *ev, Value *v) {
   if (failed) return 0;
   Value r = *v;
   if (q->far && !far_angle(ev, q)) q->failed = 1, r.e = 0;
-  for (uint32_t c = 0; c < component_count(v) && r.e; c++)
+  if (of_family && !family_components(ev, q, &r)) r.e = 0;
+  for (uint32_t c = 0; c < component_count(v) && r.e && !of_family; c++)
     if (!(r.at[c] = component_sum(ev, q, c))) r.e = 0;
   if (q->failed) return *v = FAILED, 0;
-  if (r.e) vec_push(b->arena, &b->m->sums, ((QuantifiedSum){q->outer, q->beside, q->sampled, q->lo, q->hi, of_family ? q->i : NULL}));
+  const QuantifiedSum sum = {q->outer, q->beside, q->sampled, q->lo, q->hi, of_family ? q->i : NULL};
+  if (r.e) vec_push(b->arena, &b->m->sums, sum);
   if (of_family) family_sum_end(ev, q, &r);
   if (r.e && !q->beside) {
     *v = r;
