@@ -133,7 +133,8 @@ typedef struct {
   IrNear near;
   IrFar far;
   /* of a quantified sum, which is not written out anywhere: rows of its text, of which those without turns are left
-   * out, and the number of the first; 0: of another nest; turns of a row of the text, where the nest takes half; 0: all */
+   * out, and the number of the first; 0: of another nest. Turns of a row of the text, where the nest takes half;
+   * else 0 */
   uint32_t text_rows, first_row, text_turns;
 } Nest;
 

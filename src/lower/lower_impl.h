@@ -37,8 +37,8 @@ void lower_store_target(Lower *l, SymId target, Expr value);
 void lower_roots(Lower *l, const Expr *roots, uint32_t n);
 Slot lower_slot(const Lower *l, Expr e);
 
-/* nest_halves.c: the sums of a nest over all pairs of a square with j below i alone, each turn of which adds to the sums
- * of both; NULL: the two have little in common, or it has another form. */
+/* nest_halves.c: the sums of a nest over all pairs of a square with j below i alone, each turn of which adds to the
+ * sums of both; NULL: the two have little in common, or it has another form. */
 const SumNest *nest_half(ExprGraph *g, Expr nest);
 
 /* lower_nest.c: the cells of a nest that occur in the list and have no slot yet. */

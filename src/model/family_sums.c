@@ -1,10 +1,11 @@
-/* Sums in statements of a family, `for i in 1..N { force x[i] = sum(j in 1..N, f(x[j] - x[i])) }`: one nest has the sums
- * of all members as its rows. Evaluated at two representatives, as sums over pairs are (quantified_sum.c). */
+/* Sums in statements of a family, `for i in 1..N { force x[i] = sum(j in 1..N, f(x[j] - x[i])) }`: one nest has the
+ * sums of all members as its rows. Evaluated at two representatives, as sums over pairs are (quantified_sum.c). */
 #include "model/quantified_sum.h"
 
 #include "sym/sum_nest.h"
 
-/* The only index around a sum, that of a family or a `for` with this range; NULL: there is none, or there are several. */
+/* The only index around a sum, that of a family or a `for` with this range; NULL: there is none, or there are
+ * several. */
 static const IndexVar *index_around(const Eval *ev, int64_t *range) {
   const Builder *b = ev->b;
   const uint32_t outer = ev->in_statement ? b->index.n : 0;

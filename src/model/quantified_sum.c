@@ -505,6 +505,22 @@ static int far_angle(Eval *ev, struct Quantified *q) {
   return 1;
 }
 
+/* The value of the sum, of both representatives, and whether it stays one: e is 0 where it does not. */
+static Value value_of_sum(Eval *ev, struct Quantified *q, const Value *v) {
+  Builder *b = ev->b;
+  Value r = *v;
+  const int of_family = quantified_of_family(q);
+  if (q->far && !far_angle(ev, q)) q->failed = 1, r.e = 0;
+  if (of_family && !family_components(ev, q, &r)) r.e = 0;
+  for (uint32_t c = 0; c < component_count(v) && r.e && !of_family; c++)
+    if (!(r.at[c] = component_sum(ev, q, c))) r.e = 0;
+  if (q->failed) return r;
+  const QuantifiedSum sum = {q->outer, q->beside, q->sampled, q->lo, q->hi, of_family ? q->i : NULL};
+  if (r.e) vec_push(b->arena, &b->m->sums, sum);
+  if (of_family) family_sum_end(ev, q, &r);
+  return r;
+}
+
 int quantified_next(Eval *ev, Value *v) {
   struct Quantified *q = ev->sums;
   Builder *b = ev->b;
@@ -528,15 +544,8 @@ int quantified_next(Eval *ev, Value *v) {
   const int of_family = quantified_of_family(q);
   if (of_family) ev->index.at[ev->index.n - 2] = ev->index.at[ev->index.n - 1], ev->index.n--;
   if (failed) return 0;
-  Value r = *v;
-  if (q->far && !far_angle(ev, q)) q->failed = 1, r.e = 0;
-  if (of_family && !family_components(ev, q, &r)) r.e = 0;
-  for (uint32_t c = 0; c < component_count(v) && r.e && !of_family; c++)
-    if (!(r.at[c] = component_sum(ev, q, c))) r.e = 0;
+  Value r = value_of_sum(ev, q, v);
   if (q->failed) return *v = FAILED, 0;
-  const QuantifiedSum sum = {q->outer, q->beside, q->sampled, q->lo, q->hi, of_family ? q->i : NULL};
-  if (r.e) vec_push(b->arena, &b->m->sums, sum);
-  if (of_family) family_sum_end(ev, q, &r);
   if (r.e && !q->beside) {
     *v = r;
     return 0;

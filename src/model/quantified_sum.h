@@ -83,8 +83,8 @@ void quantified_start(Eval *ev, struct Quantified *q);
 const AstNear *quantified_near(const Ast *ast, AstId sum);
 const AstFar *quantified_far_sum(const Ast *ast, AstId sum);
 
-/* quantified_sum.c: whether so many turns are too many to be written out; says that the sum is, and why: 0: no expansion
- * takes so many. */
+/* quantified_sum.c: whether so many turns are too many to be written out; says that the sum is, and why, 0: no
+ * expansion takes so many. */
 int quantified_is_long(const Builder *b, uint64_t turns);
 int quantified_write_out(const Eval *ev, const struct Quantified *q, uint64_t turns);
 

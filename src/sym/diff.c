@@ -90,14 +90,17 @@ static void prepare_sums(ExprGraph *g, const Expr *cells, uint32_t ncells, int f
   expr_write_out(g, roots, n, several.at, several.n, roots);
 }
 
-/* Prepares all sums below the roots for rates. */
-static void prepare_rates(ExprGraph *g, Expr *roots, uint32_t n) {
+/* The roots, all sums below them prepared for rates. */
+static Expr *with_rates(ExprGraph *g, const Expr *of, uint32_t n) {
   VEC(Expr) cells = {0};
+  Expr *roots = ARENA_ARRAY(g->arena, Expr, n + 1);
+  if (n) memcpy(roots, of, n * sizeof *of);
   ExprList l = g->nests.n ? expr_topo(g, roots, n) : (ExprList){0};
   for (uint32_t k = 0; k < l.n; k++)
     if (expr_op(g, l.at[k]) == EX_CELL) vec_push(g->arena, &cells, l.at[k]);
   if (l.at) expr_list_free(g, l);
   prepare_sums(g, cells.at, cells.n, 1, roots, n);
+  return roots;
 }
 
 static Expr partial_binary(ExprGraph *g, Expr e, uint32_t i) {
@@ -257,9 +260,7 @@ static void tangent_terms(ExprGraph *g, Expr e, ExprMap *dot, Terms *terms) {
 
 void expr_tangent(ExprGraph *g, const Expr *of, uint32_t n, ExprSeeds seed, const char *suffix, ExprMap *known,
                   Expr *out) {
-  Expr *roots = ARENA_ARRAY(g->arena, Expr, n + 1);
-  if (n) memcpy(roots, of, n * sizeof *of);
-  prepare_rates(g, roots, n);
+  Expr *roots = with_rates(g, of, n);
   ExprList l = expr_topo_until(g, roots, n, known);
   ExprMap *dot = &g->work; /* node -> its tangent; absent: zero */
   expr_map_clear(dot);
