@@ -87,7 +87,8 @@ static const char *const texts[] = {
     /* forces of families: full rows, rows that grow from nothing, a sum that is the same for all, indices as numbers */
     "const N = %d\ncoord x[N], y[N]\nparam k[N] = 1 > 0, c = 0.2\n"
     "kinetic = sum(i in 1..N, k[i]*x[i]'^2/2 + y[i]'^2)\n"
-    "for i in 1..N {\n  force x[i] = k[i]/N*sum(j in 1..N, sin(x[j] - x[i])*(1 + y[j]')) - c*x[i]'\n"
+    "for i in 1..N {\n  force x[i] = k[i]/N*sum(j in 1..N, sin(x[j] - x[i])*(if(i <= j, 1, if(j < i, 3, 5)) + y[j]'))"
+    " - c*x[i]'\n"
     "  force y[i] = sum(j in 1..i-1, i*x[j]^2/(1 + (i - j)^2)) + sum(j in 1..N, c*x[j]*k[j])\n}",
     /* of vectors with velocities, conditions on both indices, a let by index inside; two forces on one body */
     BODIES "let d[i in 1..N] = e[i]*r[i].x\nfor i in 1..N {\n"
@@ -207,12 +208,14 @@ static const char *random_factor(Arena *a, int pairs) {
   return arena_printf(a, one_of(shapes, 9), first, second);
 }
 
-static const char *random_sum(Arena *a, int pairs) {
+/* A random sum over i, or over pairs; rows: over j, for each i. */
+static const char *random_sum(Arena *a, int pairs, int rows) {
   static const char *const ranges[] = {"1..i-1", "i+1..N", "1..N", "2..i", "i..N"},
                     *const weights[] = {"", "i*", "k[i]*", "(i + 1/2)*w*", "-", "x[i]*", "if(i != 2, k[i], 3*w)*"};
   const char *f = random_factor(a, pairs), *g = random_factor(a, pairs), *weight = one_of(weights, pairs ? 6 : 7);
   if (!pairs) return arena_printf(a, "sum(i in 1..N, %s%s*(1 + %s))", weight, f, g);
-  return arena_printf(a, "sum(i in 1..N, %ssum(j in %s, %s + %s))", weight, one_of(ranges, 5), f, g);
+  const char *sum = arena_printf(a, "%ssum(j in %s, %s + %s)", weight, one_of(ranges, 5), f, g);
+  return rows ? sum : arena_printf(a, "sum(i in 1..N, %s)", sum);
 }
 
 /* Accelerations, energy and self-check of random families, and of the same texts written out. */
@@ -225,15 +228,16 @@ static void random_families_agree(void **state) {
     Real out[2][300];
     test_rng = (uint64_t)round + 1;
     int n = 4 + round % 3;
-    const char *pairs = random_sum(a, 1), *single = random_sum(a, 0), *beside = random_sum(a, round % 2);
+    const char *pairs = random_sum(a, 1, 0), *single = random_sum(a, 0, 0), *beside = random_sum(a, round % 2, 0);
     const char *text = arena_printf(
         a,
         "const N = %%d, M = 2*N + 2\ncoord x[M], y[M]\nparam k[M] = 1 > 0, w = 1/3\n"
         "let c[i in 1..M] = w*sin(y[i]) + if(i > 3, x[i-3], w*y[1])\n"
         "kinetic = sum(i in 1..M, k[i]*(x[i]'^2 + y[i]'^2)/2) + sum(i in 1..N, w/9*x[i]'*x[i+1]')\n"
         "potential = %s + %s + %s\n"
-        "dissipation = sum(i in 1..N, sum(j in 1..N, w/2*(x[i]' - y[j]')^2*(1 + c[i]^2)))",
-        pairs, single, beside);
+        "dissipation = sum(i in 1..N, sum(j in 1..N, w/2*(x[i]' - y[j]')^2*(1 + c[i]^2)))\n"
+        "for i in 1..N { force x[i] = %s\n force y[i+1] = %s - x[i]' }",
+        pairs, single, beside, random_sum(a, 1, 1), random_sum(a, 1, 1));
     const char *messages;
     Eqns *whole = try_family(a, text, n, 1, &messages), *written = family(a, text, n, UINT32_MAX);
     if (!whole) fail_msg("%s\n%s", text, messages);
