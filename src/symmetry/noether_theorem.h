@@ -42,7 +42,8 @@ typedef struct {
   /* the one judgement of conservation. PROVED_ZERO: power is 0 along motions; PROVED_NONZERO: not at a state */
   Verdict drift;
   Expr potential;    /* of all forces and of explicit time, where it completes the energy: Q contains it; 0: none */
-  /* drift is not decided, as forces have a potential: 2: whose integral is not found, 1: near each position */
+  /* drift is not decided, as forces have a potential: 2: whose integral is not found, 1: near each position; 3: that
+   * is not looked for */
   int open_integral;
   Expr by_constraints; /* power of the constraint forces, lambda^T (A xi + b tau); the number 0: none */
   /* first holonomic constraint, counted from 1 and no contact, that the generator does not preserve; 0: none */

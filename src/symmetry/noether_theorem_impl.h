@@ -31,5 +31,5 @@ Expr noether_at_rest(const ProofWork *w, Expr x);
 Expr noether_total(const ProofWork *w, Expr x);
 
 /* V(q, t) with power = -dV/dt along motions, of forces and explicit time; 0: none. *exists: whether
- * there is one, whose integral is not found, as has_potential. */
+ * there may be one, as Noether.open_integral. */
 Expr noether_potential(const ProofWork *w, Expr power, int *exists);

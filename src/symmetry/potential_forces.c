@@ -115,6 +115,20 @@ static int has_potential(const ProofWork *w, const LinearPower *by) {
   return is;
 }
 
+/* Whether forces contain too many coordinates to be integrated: some 50 that all depend on each other, or 16 each. */
+static int couples_many(const ProofWork *w, const LinearPower *by) {
+  enum { MOST = 2500, MOST_EACH = 16 };
+  uint64_t couplings = 0;
+  for (uint32_t i = 0; i < w->n; i++) {
+    ExprList l = expr_topo(w->g, &by->a[i], 1);
+    for (uint32_t k = 0; k < l.n; k++)
+      couplings += expr_op(w->g, l.at[k]) == EX_SYM && expr_sym_of(w->g, l.at[k])->kind == SYM_COORD;
+    expr_list_free(w->g, l);
+    if (couplings > MOST && couplings > (uint64_t)MOST_EACH * w->n) return 1;
+  }
+  return 0;
+}
+
 /* Divisors in x: marks them, or returns whether one is neither marked nor proved to be other than 0. */
 static int find_divisors(ExprGraph *g, Expr x, ExprMap *marked, int marks) {
   ExprList l = expr_topo(g, &x, 1);
@@ -141,6 +155,7 @@ Expr noether_potential(const ProofWork *w, Expr power, int *exists) {
   LinearPower by;
   *exists = 0;
   if (!linear_power(w, expr_neg(g, power), &by)) return 0;
+  if (couples_many(w, &by)) return *exists = 3, 0;
   Expr V = noether_shorten(w, expr_potential(g, by.a, by.q, w->n + 1, 1));
   int found = !expr_is_zero(g, V), single = is_single_valued(w, V);
   expr_gradient(g, V, by.q, w->n + 1, slope);

@@ -127,6 +127,9 @@ is_said constant_force conserved "a constant force"
 is_said kepler_by_force conserved "Newton's force"
 is_said well_by_force conserved "exp(u) du/dx"
 is_said shaken changes "a constraint that does work"
+is_said mean_field undecided "forces that couple 60 coordinates have a potential, which is not looked for"
+check "mean_field: and check says so" grep -q "no potential of theirs is looked for: if they have one, give it as .potential." "$TMP/words/check"
+check "mean_field: its cyclic coordinates in one line" grep -q "cyclic coordinate: a\[i\]; .* for i in 1..60" "$TMP/words/check"
 # verdicts: the words of models with these lines in the place of LINES, as "word lines" pairs, "; " between lines; `word:` where check differs
 verdicts() {
   while read -r wanted lines; do
