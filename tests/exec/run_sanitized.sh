@@ -32,7 +32,7 @@ contact floor[i in 1..3]: y[i] >= 0, restitution = 0
 scene s { start y[i in 1..3] = 0.01*i; span 0.1; method moreau(step = 0.01) }
 X
 said=$TMP/more
-for words in "run tests/exec/models/rod.lag --until 0.1" "modes tests/exec/models/rod.lag" "run $TMP/slide.lag" "run $TMP/slide.lag --method rk4" "run $TMP/pair.lag" "run $TMP/pair.lag --method radau" "run $TMP/drops.lag" "run models/sliding_ball.lag dropped" "run models/painleve_rod.lag pulled" "run models/bouncing_ball.lag --tangent --until 2" "lyapunov models/bouncing_ball.lag --until 2"; do
+for words in "run tests/exec/models/rod.lag --until 0.1" "modes tests/exec/models/rod.lag" "run $TMP/slide.lag" "run $TMP/slide.lag --method rk4" "run $TMP/pair.lag" "run $TMP/pair.lag --method radau" "run $TMP/drops.lag" "orbit models/cartesian_pendulum.lag" "run models/sliding_ball.lag dropped" "run models/painleve_rod.lag pulled" "run models/bouncing_ball.lag --tangent --until 2" "lyapunov models/bouncing_ball.lag --until 2"; do
   # shellcheck disable=SC2086 # some words
   empty "$words" "$(clean $words)"
 done
