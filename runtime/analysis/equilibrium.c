@@ -485,7 +485,7 @@ int lag_equilibrium_find(Equilibrium *r, lag_sim *sim, const lag_algebra *algebr
   choose_scales(r);
   for (int i = 0; i < n; i++) r->x[i] = r->begin[i] = r->start[i] / r->scale[i];
   if ((rc = choose_rows(r)) != 0) return rc < 0 ? rc : LAG_EDOMAIN;
-  rc = is_root(r, r->x) ? 1 : search(r, algebra);
+  rc = vanish(r, r->x) ? 1 : search(r, algebra);
   if (rc == 1) {
     round_to_zero(r);
     restore_undetermined(r);

@@ -123,7 +123,6 @@ Value exact_value(Eval *ev, const AstExpr *x) {
     }
     v.at[k] = error ? closed_form_error(b, form) : expr_symbol(b->g, form->sym)->node;
   }
-  v.bare = 0;
   v.point &= !error;
   return v;
 }

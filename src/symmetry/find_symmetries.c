@@ -257,9 +257,21 @@ static const char *tau_text(const Ansatz *a) {
   return a->has_tau ? ", tau" : ", no tau since L contains an input or a state";
 }
 
+static void use_attempt(SymmetrySearch *s, uint32_t attempt) {
+  s->out->attempt = attempt;
+  s->choices = choices_new(s->scratch, s->e, attempt, 1);
+  s->spaces = ARENA_ARRAY(s->scratch, SolutionSpace, noether_choices(s));
+}
+
+/* Other values of the parameters where rounding decides at the first ones. */
 static void search_listed(SymmetrySearch *s) {
+  enum { ATTEMPTS = 4 };
   Family f = {.kind = TIME_LISTED, .times = time_list(s)};
-  s->out->searched = noether_add_family(s, &f);
+  while (!(s->out->searched = noether_add_family(s, &f)) && s->choices.n && s->out->attempt < ATTEMPTS &&
+         search_goes_on(s->limit, 0)) {
+    use_attempt(s, s->out->attempt + 1);
+    f.times = time_list(s);
+  }
   s->out->ansatz =
       arena_printf(s->e->m->arena,
                    "xi affine in the coordinates%s%s, with coefficients in t: %s; F a polynomial of degree %u in the "
@@ -302,12 +314,6 @@ static void search_autonomous(SymmetrySearch *s) {
 static uint32_t complex_rates(SymmetrySearch *s, uint32_t choice) {
   const SolutionSpace *space = noether_space_at(s, choice);
   return space->sure ? space_rates(s->scratch, space).others : 0;
-}
-
-static void use_attempt(SymmetrySearch *s, uint32_t attempt) {
-  s->out->attempt = attempt;
-  s->choices = choices_new(s->scratch, s->e, attempt, 1);
-  s->spaces = ARENA_ARRAY(s->scratch, SolutionSpace, noether_choices(s));
 }
 
 /* Chooses values of the parameters at which L has values, and others where some rate is complex and

@@ -66,6 +66,11 @@ check "without a compiler the report is the same" cmp "$TMP/never" "$TMP/auto"
 is "one line says that there is none" 1 "$(grep -c 'there is no C compiler `/no/compiler`' "$TMP/err")"
 "$LAGC" run models/pendulum.lag th=0.5 --compile always | report >"$TMP/always"
 check "compiled, too" cmp "$TMP/never" "$TMP/always"
+# 2 x'^2 of the condition on accelerations stands in the force, too, and is read again by the solver after other values.
+echo "model parabola; coord x, z; lagrangian = (x'^2 + z'^2)/2; constraint on: z = x^2; force x = exp(-2*x'^2)*sqrt(1 + x^2)
+scene s { start x = 0.3, x' = 1.5; span 1; method rk4; output x, z }" >"$TMP/parabola.lag"
+for how in never always; do "$LAGC" run "$TMP/parabola.lag" --compile $how --quiet -o "$TMP/parabola_$how.csv"; done
+check "a value that a force and the solver share" cmp "$TMP/parabola_never.csv" "$TMP/parabola_always.csv"
 
 # The cache's entry and its bytes, when only one of them was written; and another lagc of the same name, size and time.
 halves() {

@@ -26,6 +26,9 @@ is "what it does not feel" 0 "$(d x unused | sed 's/\.0$//')"
 near "at a time" 1e-10 "$(awk 'BEGIN { printf "%.15g", sin(2)/2 }')" "$(d late v0)"
 near "of a maximum, sqrt(x0^2 + v0^2/w^2)" 1e-11 "$(awk 'BEGIN { printf "%.15g", 0.6/4/sqrt(0.25 + 0.09) }')" "$(d most v0)"
 near "of a product" 1e-10 "$(awk 'BEGIN { a = sqrt(0.34); x = 0.5*cos(2) + 0.3*sin(2); printf "%.15g", 3*(sin(2)/2*a + x*0.15/a) }')" "$(d p v0)"
+check "of the energy, m v0^2/2 + k x0^2/2, which contains parameters itself" run --gradient 'energy(1)'
+near "... by the first of them, v0^2/2" 1e-10 0.18 "$(d 'energy(1)' m)"
+near "... by the second, x0^2/2" 1e-10 0.125 "$(d 'energy(1)' k)"
 check "by the Verlet family" run --method verlet8 --step 0.01 --gradient x
 near "... of order 8" 1e-10 -0.8568887533689472 "$(d x 'x(0)')"
 check "after a method without reverse mode, by dop853" run --method taylor --gradient x

@@ -42,6 +42,12 @@ close "its shape" "sqrt(2)" "$(shape 1 th2)"
 close "its shape" "-sqrt(2)" "$(shape 2 th2)"
 close "neither grows nor decays" 0 "$(of_mode 1 re)" 0
 
+# 0.1 beside a rest at 1e8 is no rest: there w^2 = 1 + 3*0.1^2; at rest w = 1
+echo "model far; coord x; param X = 1e8; let u = x - X; lagrangian = x'^2/2 - u^2/2 - u^4/4; scene s { start x = X + 0.1 }" >"$TMP/far.lag"
+find_modes "$TMP/far.lag"
+close "where it rests" 1e8 "$(at_rest x)" 1e-15
+close "its frequency" 1 "$(of_mode 1 im)"
+
 find_modes models/double_pendulum.lag th1=3.1 th2=-0.1 # upside down: one mode grows. M^-1 K with K = diag(-2, 1) g: w^2 = -+ sqrt 2 g
 verdict unstable
 close "it stands" "pi" "$(at_rest th1)"

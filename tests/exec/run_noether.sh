@@ -45,6 +45,12 @@ check "to a file" sh -c '"$0" noether models/kepler.lag -o "$1" && cmp "$1" "$2"
 # ---- nothing is found ----
 printf '%s\n' 'model pulled' 'coord x' 'input U = 0' "lagrangian = x'^2/2 - x^2/2 - U*x" >"$TMP/pulled.lag"
 check "an input: what is not looked for" says '^looked for: .*no tau since L contains an input' noether "$TMP/pulled.lag"
+# rates 2, 5, their sum, their difference and their doubles: sin((2 - 5) t) is sin(3 t) again
+echo "model two; coord x; lagrangian = x'^2/2 + x*cos(5*t) + x*cos(2*t)" >"$TMP/two.lag"
+check "each function of time is looked for once" says "cos(10\*t), sin(10\*t), cos(7\*t), sin(7\*t), cos(3\*t), sin(3\*t), cos(4\*t), sin(4\*t), t^3, " noether "$TMP/two.lag"
+# x'' = cos(a t) + cos(b t), integrated once
+echo "model named; coord x; param a = 2, b = 5; lagrangian = x'^2/2 + x*cos(b*t) + x*cos(a*t)" >"$TMP/named.lag"
+check "two rates with names" says "^  Q2 = x' - sin(b\*t)/b - sin(a\*t)/a\$" noether "$TMP/named.lag"
 check "where there is none" says '^found: none$' noether models/kapitza.lag
 check "no symmetry is called proved" is_silent 'proved' noether models/kapitza.lag
 

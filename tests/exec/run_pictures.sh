@@ -315,6 +315,8 @@ flat() {
   "$LAGC" run "$p" wide --until 1 --observe energy --sketch --quiet | awk '/^energy/ { on = 1 } on && /┤/ { v[n++] = $1 } END { exit !(n == 2 && v[0] != v[1]) }'
 }
 check "a constant, in a terminal" flat
+charts() { "$LAGC" run "$p" wide --until 1 --observe energy --sketch --quiet | sed -n 's/^\([a-z].*\) \[.*/\1/p' | tr '\n' ' '; }
+is "each column has its chart" "th th' pull energy " "$(charts)"
 
 check "no points" says 2 'no point is given' animate "$p" --points ''
 cat >vectors.lag <<'END'

@@ -134,6 +134,7 @@ distance() {
     awk '{ d = $3/(1e-8*(exp($2) + exp(-$2))/2) - 1; if (d < 0) d = -d; if (d > most) most = d; last = $2 } END { print most; exit !(most < 0.03 && last > 9.9) }' "$TMP/points"
 }
 check "the distance of two starts grows as cosh" distance
+check "its axis is that of the time" grep -q '>t \[s\]</text>' "$TMP/distance.svg"
 # The straight line through log cosh(t) at the 1001 times of the picture, to a tenth of the largest.
 rate() {
   want=$(awk 'BEGIN { for (i = 0; i <= 1000; i++) { t = i/100; y[i] = log((exp(t) + exp(-t))/2) }

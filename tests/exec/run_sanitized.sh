@@ -5,7 +5,7 @@
 for model in models/bouncing_ball.lag ${SLOW:+models/slider_crank.lag tests/exec/models/rod.lag}; do
   empty "$model" "$(every_command "$model")"
 done
-# Further code: dry friction that sticks, also of contacts, and the tangent of a flow across events.
+# Further code: dry friction that sticks, also of contacts, the tangent of a flow across events, and a family of contacts.
 cat >"$TMP/slide.lag" <<'X'
 model slide
 coord x [m]
@@ -24,8 +24,15 @@ force x[1] = F*sin(2 [rad/s]*t) + 0.1 [N]*floor(3*t/1 [s])
 event blow: t - 3 [s] rising { x[2]' = 1 [m/s] }
 scene s { span 6 [s]; output x, rub[1], rub[2] every 0.1 [s] }
 X
+cat >"$TMP/drops.lag" <<'X'
+model drops
+coord y[3]
+lagrangian = sum(i in 1..3, y[i]'^2/2 - 10*y[i])
+contact floor[i in 1..3]: y[i] >= 0, restitution = 0
+scene s { start y[i in 1..3] = 0.01*i; span 0.1; method moreau(step = 0.01) }
+X
 said=$TMP/more
-for words in "run tests/exec/models/rod.lag --until 0.1" "modes tests/exec/models/rod.lag" "run $TMP/slide.lag" "run $TMP/slide.lag --method rk4" "run $TMP/pair.lag" "run $TMP/pair.lag --method radau" "run models/sliding_ball.lag dropped" "run models/painleve_rod.lag pulled" "run models/bouncing_ball.lag --tangent --until 2" "lyapunov models/bouncing_ball.lag --until 2"; do
+for words in "run tests/exec/models/rod.lag --until 0.1" "modes tests/exec/models/rod.lag" "run $TMP/slide.lag" "run $TMP/slide.lag --method rk4" "run $TMP/pair.lag" "run $TMP/pair.lag --method radau" "run $TMP/drops.lag" "orbit models/cartesian_pendulum.lag" "run models/sliding_ball.lag dropped" "run models/painleve_rod.lag pulled" "run models/bouncing_ball.lag --tangent --until 2" "lyapunov models/bouncing_ball.lag --until 2"; do
   # shellcheck disable=SC2086 # some words
   empty "$words" "$(clean $words)"
 done

@@ -193,6 +193,9 @@ rattles() { # SPIN SIGN, which modes are the fast and the slow rattle
 }
 rattles -5 1 1 2
 rattles 5 -1 2 1
+# sin(pi) is 1.2e-16 in doubles, which is no rate of y
+echo "model rest; coord x, y; lagrangian = x*y' - cos(x); scene s { start x = pi }" >"$TMP/rest.lag"
+check "a drift at rest does not run at what rounding leaves" says 0 "equilibrium: the start itself" "$LAGC" modes "$TMP/rest.lag" --steady
 
 # ---- the benchmark bicycle: table 2 of Meijaard et al. (2007), to its digits
 one_of 3 || { tap_end; exit; } # the rest takes a third of this suite

@@ -193,6 +193,9 @@ scene s { start x = 1; output x^2*y, energy every 0.1 }")
 check "values are counted" [ "$few" -gt 10 ]
 is "beside what rounding decides" "$few" "$(count "$free
 scene s { start x = 1; output x^2*y, max(x*y, y*x), sign(x - 3*x/3), energy every 0.1 }")"
+is "a value that is zero is compared" "$(count "$free
+scene s { start x = 1; output y every 0.1 }")" "$(count "$free
+scene s { start x = 1; output y - y every 0.1 }")"
 family="$free
 for i in 1..2 { observe s[i] = sin(th[i])*energy }
 let q[i in 1..2] = th[i]^2*r"
