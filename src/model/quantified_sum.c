@@ -439,7 +439,7 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   q->far = quantified_far_sum(b->ast, q->inner);
   int is_listed = (b->ast->nears.n || q->far) && b->sums_from < UINT32_MAX; /* such a model is meant for any N */
   if (!quantified_is_long(b, turns > guessed ? turns : guessed) && !is_listed) return 0;
-  if (q->far && !read) {
+  if (q->far && !read && (turns || hi > lo)) { /* one body has no pairs */
     refuse(b, q->far->span, "a tree takes a sum over pairs that stays one, and this one does not: %s" HELP
            "what a tree takes is in `lagc help tree`", q->why ? q->why : "its terms have no common form");
     *value_of(ev, id) = FAILED;

@@ -12,6 +12,7 @@
 
 #include "sym/expr_eval.h"
 #include "sym/prove.h"
+#include "sym/sum_nest.h"
 #include "sym/trig_simplify.h"
 
 enum { MAX_TERMS = 2000, MAX_WORK = 200000 };
@@ -300,7 +301,22 @@ typedef struct {
 } FarState;
 
 static int moves(const ExprGraph *g, SymId s) {
-  return (1u << expr_symbol(g, s)->kind & (1u << SYM_COORD | 1u << SYM_STATE | 1u << SYM_TIME | 1u << SYM_VEL)) != 0;
+  return (1u << expr_symbol(g, s)->kind &
+          (1u << SYM_COORD | 1u << SYM_STATE | 1u << SYM_TIME | 1u << SYM_VEL | 1u << SYM_LOCAL)) != 0;
+}
+
+/* Puts a symbol for each long sum: a rewritten node has the sums it had, and their terms are many. */
+static void close_sums(ExprGraph *g, Expr *e, uint32_t n) {
+  VEC(Expr) cells = {0}, symbols = {0};
+  ExprList l = expr_topo_to_sums(g, e, n);
+  for (uint32_t k = 0; k < l.n; k++) {
+    if (expr_op(g, l.at[k]) != EX_CELL) continue;
+    Expr symbol = expr_named_symbol(g, arena_printf(expr_arena(g), "sum %u", cells.n + 1));
+    vec_push(expr_arena(g), &cells, l.at[k]);
+    vec_push(expr_arena(g), &symbols, symbol);
+  }
+  expr_list_free(g, l);
+  if (cells.n) expr_replace_nodes(g, e, n, cells.at, symbols.at, cells.n, e);
 }
 
 static long double far_symbol(SymId s, const void *data) {
@@ -314,6 +330,7 @@ static int keeps_range(ExprGraph *g, Expr before, Expr after) {
   enum { SCALES = sizeof scales / sizeof *scales, SEEDS = 3 };
   Expr both[2] = {before, after};
   int risky = ((expr_traits(g, before) | expr_traits(g, after)) & HAS_GROWTH) != 0, keeps = 1;
+  if (risky) close_sums(g, both, 2);
   EvalTape *t = risky ? eval_tape(g, both, 2) : NULL;
   for (uint32_t k = 0; risky && keeps && k < SCALES * SEEDS; k++) {
     FarState at = {.g = g, .seed = 1 + k, .scale = scales[k / SEEDS]};

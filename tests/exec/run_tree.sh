@@ -37,6 +37,14 @@ check "the opening angle 0 is the direct sum" apart angle_0 1e-11 1
 check "the opening angle 0.5 is close to it" apart evaluated 3e-3 1
 check "and another sum" apart evaluated 1e-9 0
 
+# One body has no pairs: its spring alone holds it.
+sed 's/N = 90/N = 1/; s/m\[3\] = 2; m\[40\] = 5//; s/r\[90\]/r[1]/; s/1\.\.N-1/1..N/; s/i+1\.\.N/1..i-1/' "$TMP/disc.lag" >"$TMP/alone.lag"
+sed '/^potential/s/ +$//; /sum(j in/d' "$TMP/alone.lag" >"$TMP/sprung.lag"
+rows alone >"$TMP/alone"
+rows sprung >"$TMP/sprung"
+check "a tree of one body" test "$(grep -c '^[0-9]' "$TMP/alone")" = 3
+check "moves as its spring alone does" cmp "$TMP/alone" "$TMP/sprung"
+
 check "check says the error at the start" says 0 "a tree takes this sum of 1/r over 90 bodies: at the start its forces differ" "$LAGC" check "$TMP/disc.lag"
 check "an angle above 1 is refused" says 2 "1 less the opening angle of the tree" "$LAGC" run "$TMP/disc.lag" theta=1.5
 
