@@ -66,8 +66,13 @@ static int make_room(lag_sim *s, int k) {
   size_t step = s->method->tangent_size(&s->pb, k), projection = lag_tangent_projection_size(&s->pb);
   const lag_model *m = s->scene->model;
   size_t scratch = step > projection ? step : projection, held = (size_t)(m->nu + m->nmodes);
-  s->tangent = calloc(size + jump_size(s, k) + scratch + held + 1, sizeof *s->tangent);
-  if (!s->tangent) return lag_fail(s, LAG_ENOMEM, "out of memory");
+  size_t all = size + jump_size(s, k) + scratch + held + 1;
+  s->tangent = calloc(all, sizeof *s->tangent);
+  if (!s->tangent)
+    return lag_fail(s, LAG_ENOMEM,
+                    "out of memory: derivatives of %d components of the state in %d columns take %zu MB; ask for fewer "
+                    "columns, as by `--sensitivity NAME` for one start or parameter",
+                    s->pb.n, k, all / ((1 << 20) / sizeof *s->tangent) + 1);
   s->tangent_jump = s->tangent + size;
   s->tangent_scratch = s->tangent_jump + jump_size(s, k);
   s->hold_before = s->tangent_scratch + scratch;

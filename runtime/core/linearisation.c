@@ -180,6 +180,15 @@ static int inputs_by_parameter(lag_problem *pb, const lag_parameter_columns *by,
   return rc;
 }
 
+int lag_has_listed_jacobian(const lag_problem *pb) {
+  const lag_model *m = pb->model;
+  const lag_linear *l = m->linear;
+  if (m->constraints || pb->nslide || !l || l->nmass != m->nq) return 0;
+  for (int k = 0; k < l->nmass; k++)
+    if (l->mass[k].row != l->mass[k].col) return 0;
+  return 1;
+}
+
 /* Adds to columns n ... of dr, rows width apart, the derivatives of residuals by parameters, with those by inputs that
  * depend on them. */
 static int by_parameters(lag_problem *pb, const lag_parameter_columns *by, double t, const double *y, double *dr,
@@ -250,6 +259,29 @@ int lag_fine_jacobian(lag_problem *pb, const lag_parameter_columns *by, double t
   rc = rc ? rc : linearise(pb, t, y, p.rate + m->nq, width, J, p);
   rc = rc ? rc : by_parameters(pb, by, t, y, J, &p);
   return rc ? rc : lag_solve_dense((size_t)m->nq, width, p.M, J) ? LAG_ESINGULAR : LAG_OK;
+}
+
+int lag_listed_jacobian(lag_problem *pb, const lag_parameter_columns *by, double t, const double *y, double *J,
+                        double *work) {
+  const lag_model *m = pb->model;
+  const lag_linear *l = m->linear;
+  LinearLayout p = parts_of(m, work);
+  int n = pb->n, nq = pb->nq, nby = by ? by->n : 0, width = n + nby, rc = lag_rhs(pb, t, y, p.rate);
+  rc = rc ? rc : lag_inputs_at(pb, t, y);
+  rc = rc ? rc
+          : l->eval(l, t, y, y + nq, y + 2 * nq, pb->p, pb->u, p.rate + nq, p.dr, p.mass, pb->work);
+  if (rc) return rc;
+  for (int k = 0; k < nq; k++) p.M[l->mass[k].row] = p.mass[k];
+  for (int k = 0; k < l->ndr; k++) J[l->dr[k].row * width + l->dr[k].col] = p.dr[k];
+  for (int i = 0; i < n - nq; i++) memset(J + i * width + n, 0, (size_t)nby * sizeof *J);
+  rc = by ? by_parameters(pb, by, t, y, J, &p) : LAG_OK;
+  for (int k = 0; k < l->ndr && rc == LAG_OK; k++)
+    if (l->dr[k].row < nq) J[l->dr[k].row * width + l->dr[k].col] /= p.M[l->dr[k].row];
+  for (int i = 0; i < nq && rc == LAG_OK; i++) {
+    if (!(fabs(p.M[i]) > 0)) return LAG_ESINGULAR;
+    for (int j = n; j < width; j++) J[i * width + j] /= p.M[i];
+  }
+  return rc;
 }
 
 int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work) {

@@ -35,6 +35,12 @@ static inline const lag_adjoint *lag_adjoint_of(const lag_model *m) {
  * lag_adjoint gives them. */
 void lag_add_by_parameters(const lag_problem *pb, const double *by_up, const double *d, double *g);
 
+/* linearisation.c: whether the mass matrix is diagonal, so that elements of the Jacobian are those of the residuals';
+ * and lag_fine_jacobian that sets only these, model->linear->dr, and the columns by parameters. */
+int lag_has_listed_jacobian(const lag_problem *pb);
+int lag_listed_jacobian(lag_problem *pb, const lag_parameter_columns *by, double t, const double *y, double *J,
+                        double *work);
+
 /* The parts that few models have: pb->u := inputs and modes of switches; where constraints are redundant, *y := its
  * projection onto them. */
 int lag_rhs_prepare(lag_problem *pb, double t, const double **y);

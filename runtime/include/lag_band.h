@@ -26,20 +26,26 @@ static LAG_LANE lag_any_side(int n, LAG_LANE *y) {
 /* ---- band ---- */
 #ifndef LAG_NO_BAND
 /* The whole system [M A^T; A 0] within a band, for large systems: along chains, ladders and loops of any number of
- * links its work grows linearly, also where M is singular, or M^-1 full. Unknowns are in the order of Cuthill and
- * McKee (ACM '69: Proc. 24th nat. conf., 157, DOI 10.1145/800195.805928), begun at an end; the factorization is L U
- * with row exchanges, which widen the band by half at most, where the pivots of L D L^T would fill it (Golub & Van
- * Loan, 4.3 and 4.4). All scratch is of LAG_LANE. */
+ * links its work grows linearly, also where M is singular, or M^-1 full. Few constraints over many coordinates, as on
+ * the sum of a family, stand in a border of the band: it is solved by Schur's complement. Unknowns are in the order
+ * of Cuthill and McKee (ACM '69: Proc. 24th nat. conf., 157, DOI 10.1145/800195.805928), begun at an end; the
+ * factorization is L U with row exchanges, which widen the band by half at most, where the pivots of L D L^T would
+ * fill it (Golub & Van Loan, 4.3 and 4.4). All scratch is of LAG_LANE. */
 #define LAG_BAND_LEAST 62
 #define LAG_BAND_EDGES 6
+#define LAG_BAND_WIDE 64 /* neighbours of a constraint in the border: a band would be at least half as wide */
+#define LAG_BAND_BORDER 8
 
 /* The adjacency graph and the order of the unknowns: neighbours of unknown i are next[first[i]] to next[first[i +
- * 1]]; order[place[i]] = i. */
+ * 1]]; order[place[i]] = i. Places of the border come last; its edges are not in the graph. */
 typedef struct lag_band {
   int all, edges, half; /* half: half bandwidth, the largest difference of neighbours' places */
+  int inner;            /* unknowns within the band */
   LAG_LANE *edge, *first, *next, *order, *place, *scale, *rows, *pivot;
   LAG_LANE *end, *deep; /* last column of each row that is not zero, last row of each column */
   const LAG_LANE *row; /* of A, of each constraint; none: all rows */
+  LAG_LANE *across, *solved; /* rows of the border, inner elements each, and their solutions within the band */
+  const struct lag_band *core; /* Schur's complement of the border; none: no border */
 } lag_band;
 
 /* Positions at[step*k], k < count, outside of which [M | A] is zero; none: at = 0. number[row of A], of those that are
@@ -56,6 +62,19 @@ static int lag_edge(lag_band *b, int i, int j, LAG_LANE x) {
   if (b->edges == LAG_BAND_EDGES*b->all) return 0;
   b->edge[b->edges++] = (LAG_LANE)i*(LAG_LANE)b->all + (LAG_LANE)j;
   return 1;
+}
+
+/* place[all] := -1, and the last places for constraints with many neighbours (first[i], of each unknown), if they are
+ * few; sets inner. */
+static void lag_find_border(int n, lag_band *b) {
+  int wide = 0;
+  for (int i = n; i < b->all; i++) wide += b->first[i] > LAG_BAND_WIDE;
+  b->inner = b->all - (wide <= LAG_BAND_BORDER ? wide : 0);
+  for (int i = 0, at = b->inner; i < b->all; i++) {
+    const int border = b->inner < b->all && i >= n && b->first[i] > LAG_BAND_WIDE;
+    b->place[i] = (LAG_LANE)(border ? at++ : -1);
+    if (border) b->order[at - 1] = (LAG_LANE)i;
+  }
 }
 
 /* Lists the edges of the graph, i > j, as numbers i*all + j, and the neighbours of each unknown. Returns 0 where
@@ -77,9 +96,15 @@ static int lag_edges(int n, int m, const LAG_LANE *M, const LAG_LANE *A, const l
     const int i = (int)(b->edge[e]/(LAG_LANE)b->all), j = (int)(b->edge[e] - (LAG_LANE)i*(LAG_LANE)b->all);
     b->first[i] += 1, b->first[j] += 1;
   }
+  lag_find_border(n, b);
+  for (int e = 0; e < b->edges; e++) { /* the border's edges out of the graph */
+    const int i = (int)(b->edge[e]/(LAG_LANE)b->all), j = (int)(b->edge[e] - (LAG_LANE)i*(LAG_LANE)b->all);
+    if (b->place[i] >= 0) b->first[i] -= 1, b->first[j] -= 1;
+  }
   for (int i = 0; i < b->all; i++) b->first[i + 1] += b->first[i];
   for (int e = b->edges - 1; e >= 0; e--) {
     const int i = (int)(b->edge[e]/(LAG_LANE)b->all), j = (int)(b->edge[e] - (LAG_LANE)i*(LAG_LANE)b->all);
+    if (b->place[i] >= 0) continue;
     b->next[(int)(b->first[i] -= 1)] = (LAG_LANE)j;
     b->next[(int)(b->first[j] -= 1)] = (LAG_LANE)i;
   }
@@ -104,9 +129,8 @@ static int lag_walk(const lag_band *b, int i, int at) {
 /* Cuthill-McKee order: each connected component is numbered from its far end, found by two earlier walks; sets half. */
 static void lag_places(lag_band *b) {
   int at = 0;
-  for (int i = 0; i < b->all; i++) b->place[i] = -1;
   for (int i = 0; i < b->all; i++) {
-    if (b->place[i] >= 0) continue;
+    if (b->place[i] >= 0) continue; /* in a component before, or in the border */
     int end = lag_walk(b, i, at);
     for (int turn = 0; turn < 2 && end - at > 2; turn++) { /* of two unknowns both ends are far */
       const int from = (int)b->order[end - 1];
@@ -140,23 +164,28 @@ static void lag_band_fill(int n, const lag_band *b, const LAG_LANE *M, const LAG
     if (i >= n && x > b->scale[i]) b->scale[i] = x;
   }
   for (int k = n; k < b->all; k++) b->scale[k] = b->scale[k] > 0 ? 1/b->scale[k] : 1;
-  for (int k = 0; k < b->all*width; k++) b->rows[k] = 0;
+  for (int k = 0; k < b->inner*width; k++) b->rows[k] = 0;
+  for (int k = 0; k < (b->all - b->inner)*b->inner; k++) b->across[k] = 0;
   for (int k = 0; k < n; k++) b->rows[(int)b->place[k]*width + h] = M[k*n + k]*b->scale[k]*b->scale[k];
-  for (int k = 0; k < b->all; k++) b->end[k] = (LAG_LANE)k;
+  for (int k = 0; k < b->inner; k++) b->end[k] = (LAG_LANE)k;
   for (int e = 0; e < b->edges; e++) {
     const LAG_LANE x = lag_element(n, b, e, M, A, &i, &j)*b->scale[i]*b->scale[j];
     const int r = (int)b->place[i], c = (int)b->place[j];
+    if (r >= b->inner) {
+      b->across[(r - b->inner)*b->inner + c] = x;
+      continue;
+    }
     b->rows[r*width + c - r + h] = b->rows[c*width + r - c + h] = x;
     const int low = r < c ? r : c, high = r < c ? c : r;
     if (b->end[low] < high) b->end[low] = (LAG_LANE)high;
   }
-  for (int k = 0; k < b->all; k++) b->deep[k] = k > 0 && b->deep[k - 1] > b->end[k] ? b->deep[k - 1] : b->end[k];
+  for (int k = 0; k < b->inner; k++) b->deep[k] = k > 0 && b->deep[k - 1] > b->end[k] ? b->deep[k - 1] : b->end[k];
 }
 
 /* Factors the band, L U with row exchanges. Returns 0 where a pivot is 0. */
 static int lag_band_factor(const lag_band *b) {
   const int h = b->half, width = 3*h + 1;
-  for (int k = 0; k < b->all; k++) {
+  for (int k = 0; k < b->inner; k++) {
     const int last = (int)b->deep[k];
     int top = k;
     LAG_LANE *const row = b->rows + k*width + h; /* row[c]: column k + c */
@@ -185,10 +214,10 @@ static int lag_band_factor(const lag_band *b) {
   return 1;
 }
 
-/* y[all] := the solution for the right-hand side y, both scaled and in the order of places. */
-static void lag_band_solve(const lag_band *b, LAG_LANE *y) {
+/* y[inner] := the solution within the band for the right-hand side y. */
+static void lag_band_inner(const lag_band *b, LAG_LANE *y) {
   const int h = b->half, width = 3*h + 1;
-  for (int k = 0; k < b->all; k++) {
+  for (int k = 0; k < b->inner; k++) {
     const int top = (int)b->pivot[k];
     const LAG_LANE x = y[top];
     y[top] = y[k];
@@ -197,13 +226,24 @@ static void lag_band_solve(const lag_band *b, LAG_LANE *y) {
     const LAG_LANE *below = b->rows + (k + 1)*width + h - 1;
     for (int r = k + 1; r <= last; r++, below += width - 1) y[r] -= *below*x;
   }
-  for (int k = b->all - 1; k >= 0; k--) {
+  for (int k = b->inner - 1; k >= 0; k--) {
     const int right = (int)b->end[k] - k;
     const LAG_LANE *const row = b->rows + k*width + h;
     LAG_LANE x = y[k];
     for (int c = 1; c <= right; c++) x -= row[c]*y[k + c];
     y[k] = x/row[0];
   }
+}
+
+/* y[all] := the solution for the right-hand side y, both scaled and in the order of places. */
+static void lag_band_solve(const lag_band *b, LAG_LANE *y) {
+  lag_band_inner(b, y);
+  if (!b->core) return;
+  for (int k = 0; k < b->all - b->inner; k++)
+    for (int i = 0; i < b->inner; i++) y[b->inner + k] -= b->across[k*b->inner + i]*y[i];
+  lag_band_inner(b->core, y + b->inner);
+  for (int k = 0; k < b->all - b->inner; k++)
+    for (int i = 0; i < b->inner; i++) y[i] -= b->solved[k*b->inner + i]*y[b->inner + k];
 }
 
 /* Estimate of the 1-norm of the inverse of a symmetric matrix (W. Hager, SIAM J. Sci. Stat. Comput. 5 (1984) 311,
@@ -229,6 +269,30 @@ static LAG_LANE lag_band_inverse(const lag_band *b, LAG_LANE *y, LAG_LANE *z) {
   return size;
 }
 
+/* core := the Schur complement of the border, factored: a band that is full, in w. Returns 0 where it is singular, or
+ * the band alone is so ill-conditioned that its solutions say little. y[all] and z[all] are scratch. */
+static int lag_band_core(lag_band *b, lag_band *core, LAG_LANE *w, LAG_LANE *y, LAG_LANE *z) {
+  const int p = b->all - b->inner, width = 3*p - 2;
+  lag_band alone = *b;
+  alone.all = b->inner;
+  if (!(lag_band_inverse(&alone, y, z) <= (LAG_LANE)1e5)) return 0;
+  core->inner = p, core->half = p - 1, core->rows = w, core->pivot = w + p*width;
+  core->end = core->pivot + p, core->deep = core->end + p;
+  b->core = core;
+  for (int i = 0; i < p*width; i++) core->rows[i] = 0;
+  for (int k = 0; k < p; k++) {
+    LAG_LANE *const solved = b->solved + k*b->inner;
+    for (int i = 0; i < b->inner; i++) solved[i] = b->across[k*b->inner + i];
+    lag_band_inner(b, solved);
+    core->end[k] = core->deep[k] = (LAG_LANE)(p - 1);
+    for (int j = 0; j < p; j++) {
+      LAG_LANE *const s = &core->rows[j*width + k - j + p - 1];
+      for (int i = 0; i < b->inner; i++) *s -= b->across[j*b->inner + i]*solved[i];
+    }
+  }
+  return lag_band_factor(core);
+}
+
 /* y := residual of the right-hand side (f, g) for the solution x, 0 if NULL, scaled and in the order of places. */
 static void lag_band_rest(int n, const lag_band *b, const LAG_LANE *M, const LAG_LANE *A, const LAG_LANE *side,
                           const LAG_LANE *x, LAG_LANE *y) {
@@ -248,7 +312,7 @@ static void lag_band_rest(int n, const lag_band *b, const LAG_LANE *M, const LAG
 static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, const lag_entries *of, LAG_LANE *x,
                       LAG_LANE *l, LAG_LANE *w, int room) {
   const int all = n + m;
-  lag_band b = {all, 0, 0, w, w + LAG_BAND_EDGES*all, 0, 0, 0, 0, 0, 0, 0, 0, of->row};
+  lag_band b = {all, 0, 0, all, w, w + LAG_BAND_EDGES*all, 0, 0, 0, 0, 0, 0, 0, 0, of->row, 0, 0, 0}, core = b;
   b.next = b.first + all + 1, b.order = b.next + 2 * LAG_BAND_EDGES * all, b.place = b.order + all,
   b.scale = b.place + all, b.pivot = b.scale + all;
   LAG_LANE *const side = b.pivot + all, *const y = side + all, *const z = y + all;
@@ -256,9 +320,12 @@ static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, const 
   b.rows = b.deep + all;
   if (b.rows - w > room || !lag_edges(n, m, M, A, of, &b)) return 0;
   lag_places(&b);
-  if (3 * b.half + 1 > (room - (int)(b.rows - w)) / all) return 0;
+  const int border = all - b.inner;
+  if (3*b.half + 1 + 2*border + 3*border > (room - (int)(b.rows - w))/all) return 0;
+  b.across = b.rows + b.inner*(3*b.half + 1), b.solved = b.across + border*b.inner;
   lag_band_fill(n, &b, M, A);
   if (!lag_band_factor(&b)) return 0;
+  if (border && !lag_band_core(&b, &core, b.solved + border*b.inner, y, z)) return 0;
   const LAG_LANE inverse = lag_band_inverse(&b, y, z);
   if (!(inverse <= (LAG_LANE)1e10)) return 0;
   for (int i = 0; i < all; i++) side[i] = i < n ? x[i] : l[i - n], z[i] = 0;

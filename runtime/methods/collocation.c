@@ -125,7 +125,7 @@ static int residual(const Collocation *w, const CollocationArrays *a, lag_proble
 
 /* Factors Newton's matrix 1 - h a_ik J_i at the present stages. */
 static int matrix(const Collocation *w, CollocationArrays *a, lag_problem *pb, const Step *s) {
-  lag_tangent at = {pb, 0, a->jacobian, a->linear, NULL};
+  lag_tangent at = {pb, 0, a->jacobian, a->linear, NULL, 0};
   for (int i = 0; i < (int)w->rule.free; i++) {
     stage(w, s, pb->n, i, a->Y);
     int rc = lag_tangent_at(&at, time_of(w, s, i), a->Y, NULL);

@@ -101,7 +101,7 @@ static void put_transposed(const lag_tangent *at, const lag_band_matrix *m, int 
 int lag_reverse_implicit(lag_implicit_rk of, lag_step_taken step, double *x, double *g, double *scratch) {
   int n = step.pb->n, stages = of.stages, big = stages * n, rc = LAG_OK;
   double dt = step.dt, *f;
-  lag_tangent at = lag_tangent_layout(step.pb, 1, scratch, &f);
+  lag_tangent at = lag_tangent_layout(step.pb, 1, 0, scratch, &f);
   double *X = f + big, *scale = X + big, *pivot = scale + big;
   lag_band_matrix m = {big, big - 1, pivot + big, pivot};
   double *rates = m.a + big * big;

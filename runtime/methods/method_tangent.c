@@ -5,11 +5,13 @@
 
 #include <string.h>
 
+#include "core/rhs.h"
 #include "methods/steps.h"
 
-lag_tangent lag_tangent_layout(lag_problem *pb, int k, double *scratch, double **rest) {
+lag_tangent lag_tangent_layout(lag_problem *pb, int k, int products, double *scratch, double **rest) {
   int width = pb->n + (pb->by ? pb->by->n : 0);
-  lag_tangent w = {pb, k, scratch, scratch + (pb->nq + pb->nz) * width, pb->by};
+  lag_tangent w = {pb, k, scratch, scratch + (pb->nq + pb->nz) * width, pb->by,
+                   products && lag_has_listed_jacobian(pb)};
   *rest = w.linear + lag_linear_work(pb->model);
   return w;
 }
@@ -22,14 +24,25 @@ size_t lag_tangent_size(const lag_problem *pb, int stages, int k) {
          (size_t)stages * (n + block);
 }
 
+/* Whether an element of the Jacobian is not finite. */
+static int has_not_finite(const lag_tangent *w) {
+  const lag_linear *l = w->pb->model->linear;
+  int n = w->pb->n, width = lag_tangent_width(w), rows = w->pb->nq + w->pb->nz;
+  if (!w->listed) return lag_not_finite(rows * width, w->jacobian) >= 0;
+  for (int k = 0; k < l->ndr; k++)
+    if (!isfinite(w->jacobian[l->dr[k].row * width + l->dr[k].col])) return 1;
+  for (int i = 0; i < rows; i++)
+    if (lag_not_finite(width - n, w->jacobian + i * width + n) >= 0) return 1;
+  return 0;
+}
+
 int lag_tangent_at(const lag_tangent *w, double t, const double *y, double *f) {
-  int n = w->pb->n, rc = lag_fine_jacobian(w->pb, w->by, t, y, w->jacobian, w->linear);
+  int n = w->pb->n, rc = (w->listed ? lag_listed_jacobian : lag_fine_jacobian)(w->pb, w->by, t, y, w->jacobian,
+                                                                               w->linear);
   if (rc == LAG_EMETHOD) return lag_step_failed(w->pb, rc, t);
   if (rc) return lag_step_refused(w->pb, rc, t);
   if (f) memcpy(f, w->linear, (size_t)n * sizeof *f);
-  return lag_not_finite((w->pb->nq + w->pb->nz) * lag_tangent_width(w), w->jacobian) >= 0
-             ? lag_step_failed(w->pb, LAG_ENAN, t)
-             : LAG_OK;
+  return has_not_finite(w) ? lag_step_failed(w->pb, LAG_ENAN, t) : LAG_OK;
 }
 
 enum { AT_ONCE = 16 }; /* terms of a sum; no table has more stages */
@@ -56,13 +69,27 @@ static void add_rows(int m, int count, const double *c, const int *at, const dou
   for (; j < count; j++) lag_tangent_add(m, c[j], x + at[j] * m, out);
 }
 
+/* out[(n - nq) k] += J Y by the listed elements of J, row by row. */
+static void listed_times(const lag_tangent *w, const double *Y, double *out) {
+  const lag_linear *l = w->pb->model->linear;
+  int k = w->k, width = lag_tangent_width(w);
+  for (int e = 0, i; e < l->ndr;) {
+    double c[AT_ONCE];
+    int at[AT_ONCE], some = 0;
+    for (i = l->dr[e].row; e < l->ndr && l->dr[e].row == i && some < AT_ONCE; e++, some++)
+      c[some] = w->jacobian[i * width + l->dr[e].col], at[some] = l->dr[e].col;
+    add_rows(k, some, c, at, Y, out + i * k);
+  }
+}
+
 void lag_tangent_times(const lag_tangent *w, const double *Y, double *out) {
   int n = w->pb->n, nq = w->pb->nq, k = w->k, width = lag_tangent_width(w);
   memcpy(out, Y + nq * k, (size_t)(nq * k) * sizeof *out);
   memset(out + nq * k, 0, (size_t)((n - nq) * k) * sizeof *out);
+  if (w->listed) listed_times(w, Y, out + nq * k);
   for (int i = 0; i < n - nq; i++) {
     const double *J = w->jacobian + i * width;
-    for (int j = 0, some; j < n; j += AT_ONCE) {
+    for (int j = 0, some; j < n && !w->listed; j += AT_ONCE) {
       double c[AT_ONCE];
       int at[AT_ONCE];
       some = gather(n - j < AT_ONCE ? n - j : AT_ONCE, j, J, 1, c, at);
@@ -84,7 +111,7 @@ static void combine(int m, int count, const double *coef, double dt, const doubl
 int lag_tangent_explicit(const lag_tableau *tab, lag_step_taken step, int k, double *Y, double *scratch) {
   int n = step.pb->n, m = n * k, last = tab->stages - 1;
   double *rest;
-  lag_tangent w = lag_tangent_layout(step.pb, k, scratch, &rest);
+  lag_tangent w = lag_tangent_layout(step.pb, k, 1, scratch, &rest);
   double *ys = rest, *Ys = ys + n, *f = Ys + m, *F = f + last * n; /* f[n], F[n k] of each stage */
 
   for (int s = 0; s <= last; s++) {
@@ -122,7 +149,7 @@ void lag_tangent_put_stage(const lag_tangent *w, const lag_band_matrix *m, int s
 int lag_tangent_implicit(lag_implicit_rk of, lag_step_taken step, int k, double *Y, double *scratch) {
   int n = step.pb->n, stages = of.stages, big = stages * n, rc;
   double dt = step.dt, *rest;
-  lag_tangent w = lag_tangent_layout(step.pb, k, scratch, &rest);
+  lag_tangent w = lag_tangent_layout(step.pb, k, 0, scratch, &rest);
   double *K = rest, *column = K + big * k, *scale = column + big;
   lag_band_matrix m = {big, big - 1, scale + 2 * big, scale + big};
 
@@ -210,7 +237,7 @@ int lag_tangent_along(lag_tangent_path *path, void *work, lag_step_taken step, i
   const double tol = fmax(pb->tol, 1e-14), safety = 0.9, shrink_most = 0.2, grow_most = 6, least = 1e-6;
   int n = pb->n, m = n * (k + 1), stages = tab->stages - 1, rc;
   double *rest;
-  lag_tangent w = lag_tangent_layout(pb, k + 1, scratch, &rest);
+  lag_tangent w = lag_tangent_layout(pb, k + 1, 1, scratch, &rest);
   double *y = rest, *Ys = y + n, *error = Ys + m, *F = error + m, *X = F + stages * m;
   with_probe(n, k, Y, X);
   for (double done = 0, part = 1; done < 1;) {

@@ -46,12 +46,14 @@ typedef struct lag_tangent {
   double *jacobian; /* [(nq + nz) width] */
   double *linear;   /* scratch of lag_jacobian */
   const lag_parameter_columns *by; /* columns by parameters; NULL: none */
+  int listed;                      /* only the listed elements of jacobian are known: lag_listed_jacobian */
 } lag_tangent;
 
 static inline int lag_tangent_width(const lag_tangent *w) { return w->pb->n + (w->by ? w->by->n : 0); }
 
-/* A lag_tangent in scratch; *rest := the unused remainder of scratch. */
-lag_tangent lag_tangent_layout(lag_problem *pb, int k, double *scratch, double **rest);
+/* A lag_tangent in scratch; *rest := the unused remainder of scratch. products: its Jacobian serves only in
+ * lag_tangent_times. */
+lag_tangent lag_tangent_layout(lag_problem *pb, int k, int products, double *scratch, double **rest);
 /* w->jacobian := df/dy, and behind it in each row df by the parameters of columns, at (t, y), and f[n], unless NULL, :=
  * f(t, y). LAG_OK, or a failure. */
 int lag_tangent_at(const lag_tangent *w, double t, const double *y, double *f);

@@ -166,7 +166,7 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
   Verlet *w = work;
   int n = pb->n, nq = half_of(pb), rc = 0;
   double dt = lag_tangent_span(w->step.t0, t, w->step.h * pb->dir), at = 0, *rest;
-  lag_tangent all = lag_tangent_layout(pb, k, scratch, &rest);
+  lag_tangent all = lag_tangent_layout(pb, k, 1, scratch, &rest);
   double *y = rest, *f = y + n, *F = f + n;
 
   memcpy(y, w->x + VERLET_Y0 * n, (size_t)n * sizeof *y);

@@ -219,8 +219,9 @@ static void bring_pivot(const Elimination *x, Row *r, long double least) {
 
 /* Chooses the next pivot row, with a pivot of at least a sixteenth of the largest element, or of the initial largest
  * where elements have grown, as in a row that sums all members (its one long row would be taken and fill the others).
- * Sixteenth: a power of two, so that a size class holds no row that is searched in vain. Returns 0 where no element is
- * above `least`. */
+ * Sixteenth: a power of two, so that a size class holds no row that is searched in vain. A row a quarter as long may
+ * have a pivot 2^-12 as large, as where members enter that sum with factors of many sizes: of 64 bits 12, and ranks are
+ * decided at 2^-43. Returns 0 where no element is above `least`. */
 static int choose_pivot_row(Elimination *x, long double least, uint32_t *row) {
   static const Row none;
   long double largest = x->n ? x->most[1] : 0;
@@ -228,7 +229,10 @@ static int choose_pivot_row(Elimination *x, long double least, uint32_t *row) {
   int exponent = 0;
   (void)frexpl(largest, &exponent);
   long double enough = isfinite(largest) ? ldexpl(1, (exponent < x->top ? exponent : x->top) - 4) : largest;
-  uint32_t i = *row = shortest_row(x, enough);
+  long double relaxed = fmaxl(ldexpl(enough, -12), least);
+  uint32_t i = shortest_row(x, enough), shorter = shortest_row(x, relaxed);
+  if (x->rows[shorter].n <= x->rows[i].n / 4) i = shorter, enough = relaxed;
+  *row = i;
   bring_pivot(x, &x->rows[i], fmaxl(enough, x->most[x->n + (size_t)i] / 16));
   unlist_row(x, i);
   update_largest(x, i, &none);

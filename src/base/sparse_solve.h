@@ -24,8 +24,8 @@ void sparse_equilibrate(Arena *arena, uint32_t n, const SparseElements *a, int *
 /* Solves a x = b, n by n, and returns the rank; b[n] becomes x (NULL: only the rank). The system is equilibrated
  * first, so that units of unknowns and factors of equations do not matter. Threshold pivoting: a pivot is at least a
  * sixteenth of the largest element of its row and of the largest remaining or initial element, whichever is less, in
- * the shortest such row, for little fill: I. S. Duff, A. M. Erisman, J. K. Reid, Direct Methods for Sparse Matrices,
- * 2nd ed. (2017), 7.2. Elimination ends where no element exceeds
+ * the shortest such row, for little fill, or smaller where a far shorter row offers it: I. S. Duff, A. M. Erisman,
+ * J. K. Reid, Direct Methods for Sparse Matrices, 2nd ed. (2017), 7.2. Elimination ends where no element exceeds
  * `tolerance` times the initial largest; undetermined unknowns are 0. Rank below n: null[n] (or NULL) gets a vector
  * of the kernel. */
 uint32_t sparse_solve(Arena *arena, uint32_t n, const SparseElements *a, long double *b, long double tolerance,

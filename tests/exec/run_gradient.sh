@@ -255,4 +255,11 @@ units() { # MODEL SCENE METHOD
 check "units of steps" units models/double_pendulum.lag double_pendulum_swing dop853
 slow check "... of slides" units "$S/rub.lag" rub_s dop853
 slow check "... with a constraint, implicit" units "$S/rod.lag" rod_s radau
+# 2000 components by 2001 starts and parameters: 31 MB a matrix, 12 for the stages of dop853, 4 for the Jacobian, the columns,
+# and those of a stage and of the result.
+printf '%s\n' 'model family' 'const N = 1000' 'param k = 1' 'coord w[N]' \
+  "lagrangian = sum(i in 1..N, (w[i]'^2 - k*w[i]^2)/2)" 'scene s { start w[i in 1..N] = i/N; span 1 }' >"$TMP/family.lag"
+too_large() { (ulimit -v 400000 && "$LAGC" run "$TMP/family.lag" --method dop853 --gradient 'w[1]'); }
+check "a gradient too large for memory says so" says 0 "no gradient of w[1]: out of memory: derivatives of 2000 components" too_large
+check "how large, and what to do" grep -q 'take 5[0-3][0-9] MB; ask for fewer columns, as by .--sensitivity NAME' "$TMP/out"
 tap_end

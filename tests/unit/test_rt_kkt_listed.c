@@ -58,6 +58,51 @@ static void test_band(void **state) { (void)state, solves(N - 1, 0, 0, 1), solve
 static void test_few_closed(void **state) { (void)state, solves(N - 1, 0, 2, 0), solves(N - 1, 0, 3, 1); }
 static void test_dependent(void **state) { (void)state, solves(N, 1, 0, 0); }
 
+/* Bodies in glued pairs, and a sum over all bodies with factors pair/N, twice if `twice`, that is to accelerate by 1:
+ * with l its multiplier, a pair of mass m, force f and factor 2 a moves by (f + 2 a l)/m. The first body is without
+ * mass if `light`, its pair held together by nothing but the sum: not by the band without the sum. */
+static void holds_sums(int twice, int light, int banded) {
+  enum { ALL = 100, PAIRS = ALL / 2 };
+  const int m = PAIRS + 1 + twice, size = 2 * ALL * ALL + 2 * m * ALL + m * m + 3 * ALL + 10 * m;
+  unsigned at[9 * ALL];
+  double *w = malloc((size_t)size * sizeof *w), *A = w + ALL * ALL, *x = A + m * ALL, *l = x + ALL;
+  double square = 0, along = 0;
+  int count = 0;
+  for (int i = 0; i < size; i++) w[i] = NAN;
+  for (int i = 0; i < ALL; i++) {
+    w[i * ALL + i] = light && i < 2 ? 0 : mass(i);
+    at[count++] = (unsigned)(i * ALL + i);
+    x[i] = light && i < 2 ? 0 : force(i);
+  }
+  for (int k = 0; k < PAIRS; k++) {
+    A[k * ALL + 2 * k] = -1, A[k * ALL + 2 * k + 1] = 1, l[k] = 0;
+    at[count++] = (unsigned)(ALL * ALL + k * ALL + 2 * k), at[count++] = (unsigned)(ALL * ALL + k * ALL + 2 * k + 1);
+    const double a = 2. * (k + 1) / ALL, inertia = mass(2 * k) + mass(2 * k + 1), f = force(2 * k) + force(2 * k + 1);
+    if (!light || k) square += a * a / inertia, along += a * f / inertia;
+  }
+  for (int k = PAIRS; k < m; k++) {
+    l[k] = 1;
+    for (int i = 0; i < ALL; i++)
+      A[k * ALL + i] = (i / 2 + 1.) / ALL, at[count++] = (unsigned)(ALL * ALL + k * ALL + i);
+  }
+  assert_true(lag_kkt_listed(ALL, m, 0, at, 1, count, w));
+  assert_int_equal(isnan(w[1]) != 0, banded);
+  const double sum = light ? 0 : (1 - along) / square; /* the pair without mass moves freely, and does the sum's part */
+  double done = 0;
+  for (int i = 0; i < ALL; i++) {
+    int k = i / 2;
+    double a = 2. * (k + 1) / ALL, f = force(2 * k) + force(2 * k + 1), inertia = mass(2 * k) + mass(2 * k + 1);
+    if (light && !k) continue;
+    assert_true(fabs(x[i] - (f + a * sum) / inertia) < 1e-12); /* a pair's l: sums of 100 forces of size 1 */
+    done += x[i] * a / 2;
+  }
+  if (light) assert_true(fabs(x[0] - x[1]) < 1e-12 && fabs(x[0] * 2 / ALL + done - 1) < 1e-12);
+  for (int k = PAIRS; k < m; k++) assert_true(fabs(l[k] * (1 + twice) - sum) < 1e-11); /* of least norm */
+  free(w);
+}
+
+static void test_border(void **state) { (void)state, holds_sums(0, 0, 1), holds_sums(1, 0, 0), holds_sums(0, 1, 0); }
+
 /* A telescope without mass on a door: its length and angle follow the door, x = f/I, whatever in A passes 0. */
 static void test_without_mass(void **state) {
   (void)state;
@@ -80,6 +125,7 @@ static void test_without_mass(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_band),
+      cmocka_unit_test(test_border),
       cmocka_unit_test(test_few_closed),
       cmocka_unit_test(test_dependent),
       cmocka_unit_test(test_without_mass),
