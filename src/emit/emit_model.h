@@ -8,7 +8,7 @@
 /* Identifier of the lag_model for a model that the user called `name`; free in <math.h> and in the emitted file. */
 const char *model_id(Arena *a, const char *name);
 
-/* Texts of emit_model and emit_accel have marks, which late_text_write replaces. */
+/* Texts of emit_model, emit_accel and emit_header have marks, which late_text_write replaces. */
 
 /* Appends one file: a lag_model called NAME (a C identifier), and a lag_scene NAME_scene for each scene. alone: of the
  * runtime's headers it includes lag_model.h only. */

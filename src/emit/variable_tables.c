@@ -6,8 +6,6 @@
 
 #include "base/num.h"
 
-enum { MOST_IN_GROUP = 16, FEWEST_GROUPS = 32 };
-
 void table_macros(StrBuf *out) {
   sb_puts(out, "\n/* f(i0) f(i1) ... f(i9), digits pasted: LAG_10(f, 12) is f(120) ... f(129). */\n");
   for (int block = 10; block <= LATE_RUNS_BLOCK; block *= 10) {
