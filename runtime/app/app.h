@@ -317,6 +317,10 @@ void lag_app_volume_step(App *app);
 void lag_report_volume(App *app, FILE *f);
 void lag_report_volume_json(App *app, Json *j);
 
+/* Emitted programs call this, by a declaration of their own: table[groups * size] := groups of the pattern's entries,
+ * with the numbers first, first + 1, ... in place of \1 in their names. Without memory the program ends. */
+void lag_app_names(lag_var *table, int first, int groups, const lag_var *pattern, int size);
+
 /* measures.c: --measure, and the measures of the scene. open: before the run, and before files are opened; 0, or
  * EXIT_USAGE after a message. begin and end: of the run; a status. advance: lag_sim_advance, with measures if there
  * are any. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "app/app.h"
+#include "numeric/fnv1a.h"
 #include "numeric/release.h"
 
 /* The words of NAME=WORDS, or, as lagc writes them, NAME;WORDS;WORDS for the variants of the model; alone they are
@@ -14,49 +15,68 @@ static const char *split(const char *text, size_t *name_length) {
   return text[*name_length] ? text + *name_length + 1 : text;
 }
 
-/* Adds a measure; one of the command line replaces the scene's of its name. Returns its number, -1 after a message. */
-static int add(App *app, int *n, const char *name, size_t length, const char *text, const char **texts) {
-  int k = 0, ofscene = app->scene->nmeasures;
-  while (k < *n && (strlen(app->measure_names[k]) != length || memcmp(app->measure_names[k], name, length) != 0)) k++;
-  if (k < *n && (k >= ofscene || *n < ofscene)) {
-    lag_app_error(&app->args, "--measure %.*s: another measure is called so; write NAME=EXPR with another name",
-                  (int)length, name);
-    return -1;
+/* Measures while they are collected: n of them, and their numbers, from 1, in a hash table; 0: free. */
+typedef struct Collected {
+  App *app;
+  const char **texts;
+  int n, *place;
+  size_t places;
+} Collected;
+
+static int *place_of(const Collected *c, const char *name, size_t length) {
+  size_t i = (size_t)lag_fnv1a(LAG_FNV1A_START, name, length) % c->places;
+  for (const char *known; c->place[i]; i = (i + 1) % c->places) {
+    known = c->app->measure_names[c->place[i] - 1];
+    if (strlen(known) == length && memcmp(known, name, length) == 0) break;
   }
-  texts[k] = text;
-  if (k < *n) return k;
-  app->measure_names[k] = calloc(length + 1, 1);
-  if (!app->measure_names[k]) return lag_app_error(&app->args, "out of memory"), -1;
-  memcpy(app->measure_names[k], name, length);
-  return (*n)++;
+  return &c->place[i];
 }
 
-/* texts[n] := expressions of the scene, then of the command line. Returns n, -1 after a message. */
-static int collect(App *app, const char **texts) {
+/* Adds a measure; one of the command line replaces the scene's of its name. 0, or -1 after a message. */
+static int add(Collected *c, const char *name, size_t length, const char *text) {
+  App *app = c->app;
+  int *place = place_of(c, name, length), k = *place - 1, ofscene = app->scene->nmeasures;
+  if (k >= 0 && (k >= ofscene || c->n < ofscene))
+    return lag_app_error(&app->args, "--measure %.*s: another measure is called so; write NAME=EXPR with another name",
+                         (int)length, name), -1;
+  c->texts[k < 0 ? c->n : k] = text;
+  if (k >= 0) return 0;
+  app->measure_names[c->n] = calloc(length + 1, 1);
+  if (!app->measure_names[c->n]) return lag_app_error(&app->args, "out of memory"), -1;
+  memcpy(app->measure_names[c->n], name, length);
+  *place = ++c->n;
+  return 0;
+}
+
+/* Expressions of the scene, then of the command line. 0, or -1 after a message. */
+static int collect(Collected *c) {
+  const App *app = c->app;
   const lag_scene *scene = app->scene;
-  int n = 0;
   for (int k = 0; k < scene->nmeasures; k++)
-    if (add(app, &n, scene->measures[k].name, strlen(scene->measures[k].name), scene->measures[k].text, texts) < 0)
-      return -1;
+    if (add(c, scene->measures[k].name, strlen(scene->measures[k].name), scene->measures[k].text)) return -1;
   for (int k = 0; k < app->args.nmeasures; k++) {
     size_t length;
     const char *given = app->args.measures[k], *text = split(given, &length);
     if (length == 0) return lag_app_error(&app->args, "--measure %s: a name is missing before `=`", given), -1;
-    if (add(app, &n, given, length, text, texts) < 0) return -1;
+    if (add(c, given, length, text)) return -1;
   }
-  return n;
+  return 0;
 }
 
 int lag_app_measures_open(App *app) {
   size_t most = (size_t)(app->args.nmeasures + app->scene->nmeasures);
   char why[400];
   if (most == 0) return 0;
-  const char **texts = app->measure_texts = calloc(most, sizeof *texts);
+  Collected c = {.app = app, .places = 2 * most};
+  c.place = calloc(c.places, sizeof *c.place);
+  c.texts = app->measure_texts = calloc(most, sizeof *c.texts);
   app->measured = calloc(most, sizeof *app->measured);
   app->measure_names = calloc(most + 1, sizeof *app->measure_names);
-  int n = texts && app->measured && app->measure_names ? collect(app, texts)
-                                                       : (lag_app_error(&app->args, "out of memory"), -1);
-  if (n >= 0 && !(app->measures = lag_measures_new(app->scene, n, texts, NULL, why, sizeof why)))
+  int rc = c.place && c.texts && app->measured && app->measure_names
+               ? collect(&c)
+               : (lag_app_error(&app->args, "out of memory"), -1);
+  free(c.place);
+  if (rc == 0 && !(app->measures = lag_measures_new(app->scene, c.n, c.texts, NULL, why, sizeof why)))
     lag_app_error(&app->args, "--measure %s", why);
   if (!app->measures) return EXIT_USAGE;
   return lag_measures_refused(app->measures, app->sim, app->until, why, sizeof why)

@@ -66,16 +66,21 @@ static int write_rows(SweepApp *s) {
 
 /* ---- Statistics */
 
+enum { MOST_VALUES = 1 << 22 }; /* numbers in memory, if one measure has no more */
+
+/* Values of some measures, n[k] of column + k. */
 typedef struct Values {
-  int column;
+  int column, count; /* of the first; their number */
+  size_t room;       /* for each */
   double *value;
-  long long n;
+  size_t *n;
 } Values;
 
-static int take_value(void *values, long long run, const double *row) {
+static int take_values(void *values, long long run, const double *row) {
   Values *v = values;
   (void)run;
-  if (isfinite(row[v->column])) v->value[v->n++] = row[v->column];
+  for (int k = 0; k < v->count; k++)
+    if (isfinite(row[v->column + k])) v->value[(size_t)k * v->room + v->n[k]++] = row[v->column + k];
   return 0;
 }
 
@@ -87,21 +92,35 @@ static double quantile(const double *sorted, long long n, double part) {
   return i + 1 < n ? sorted[i] + (at - (double)i) * (sorted[i + 1] - sorted[i]) : sorted[n - 1];
 }
 
-static int statistics_of(SweepApp *s, int column, Statistics *t) {
-  Values v = {.column = column, .value = malloc((size_t)s->plan.runs * sizeof(double))};
+static Statistics statistics_of(double *value, long long n) {
   double sum = 0, squares = 0;
-  *t = (Statistics){.n = 0, .mean = NAN, .deviation = NAN, .least = NAN, .most = NAN, .quantile = {NAN, NAN, NAN}};
-  int rc = v.value ? lag_sweep_each_row(s, take_value, &v) : -1;
-  if (rc == 0 && v.n) {
-    qsort(v.value, (size_t)v.n, sizeof *v.value, lag_ascending);
-    for (long long i = 0; i < v.n; i++) sum += v.value[i];
-    t->n = v.n;
-    t->mean = sum / (double)v.n;
-    for (long long i = 0; i < v.n; i++) squares += (v.value[i] - t->mean) * (v.value[i] - t->mean);
-    if (v.n > 1) t->deviation = sqrt(squares / (double)(v.n - 1));
-    t->least = v.value[0];
-    t->most = v.value[v.n - 1];
-    for (int k = 0; k < 3; k++) t->quantile[k] = quantile(v.value, v.n, parts[k]);
+  Statistics t = {.n = n, .mean = NAN, .deviation = NAN, .least = NAN, .most = NAN, .quantile = {NAN, NAN, NAN}};
+  if (n == 0) return t;
+  qsort(value, (size_t)n, sizeof *value, lag_ascending);
+  for (long long i = 0; i < n; i++) sum += value[i];
+  t.mean = sum / (double)n;
+  for (long long i = 0; i < n; i++) squares += (value[i] - t.mean) * (value[i] - t.mean);
+  if (n > 1) t.deviation = sqrt(squares / (double)(n - 1));
+  t.least = value[0];
+  t.most = value[n - 1];
+  for (int k = 0; k < 3; k++) t.quantile[k] = quantile(value, n, parts[k]);
+  return t;
+}
+
+/* t[nmeasures]. The rows are read once for as many measures as the memory holds. */
+static int all_statistics(SweepApp *s, Statistics *t) {
+  size_t runs = (size_t)s->plan.runs, held = runs < MOST_VALUES ? MOST_VALUES / (runs + 1) + 1 : 1;
+  int all = s->sweep.nmeasures, most = held < (size_t)all ? (int)held : all;
+  Values v = {.room = runs, .value = malloc(runs * (size_t)most * sizeof(double) + 1)};
+  int rc = v.value ? 0 : -1;
+  for (int from = 0; from < all && rc == 0; from += v.count) {
+    v.column = s->plan.n + from;
+    v.count = all - from < most ? all - from : most;
+    v.n = calloc((size_t)v.count, sizeof *v.n);
+    rc = v.n ? lag_sweep_each_row(s, take_values, &v) : -1;
+    for (int k = 0; k < v.count && rc == 0; k++)
+      t[from + k] = statistics_of(v.value + (size_t)k * v.room, (long long)v.n[k]);
+    free(v.n);
   }
   free(v.value);
   return rc;
@@ -232,7 +251,7 @@ int lag_sweep_report(SweepApp *s) {
   rc = rc ? rc : lag_sweep_motions_write(s);
   if (rc == 0) {
     int lost = lag_sweep_each_row(s, count_failure, &bad);
-    for (int k = 0; k < s->sweep.nmeasures && !lost; k++) lost = statistics_of(s, s->plan.n + k, &t[k]);
+    lost = lost ? lost : all_statistics(s, t);
     for (int k = 0; k < MOST_KINDS; k++) failed += bad.failed[k].n;
     if (lost) rc = lag_app_error(a, "out of memory for the statistics; the rows are written");
     else if (a->json) print_json(s, t, &bad, failed);

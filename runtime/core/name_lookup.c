@@ -12,27 +12,45 @@ static int is_called(const lag_var *var, const char *name, size_t length) {
   return var->name[0] == name[0] && strlen(var->name) == length && memcmp(var->name, name, length) == 0;
 }
 
-/* Where a member of a family that counts up from the variable `first`, as r[1].x, r[1].y, r[2].x, stands; -1: not
- * there. stem: length of the name up to its number. */
-static int find_member(const lag_var *vars, int n, int first, const char *name, size_t length, size_t stem) {
-  long from = strtol(vars[first].name + stem, NULL, 10), to = strtol(name + stem, NULL, 10);
-  int group = 0;
-  while (first + group < n && strncmp(vars[first + group].name, name, stem) == 0 &&
-         strtol(vars[first + group].name + stem, NULL, 10) == from)
-    group++;
-  if (to < from || to - from >= (n - first) / group) return -1;
-  for (int i = first + (int)(to - from) * group, end = i + group; i < end; i++)
-    if (is_called(&vars[i], name, length)) return i;
-  return -1;
+/* A family that counts up, as r[1].x, r[1].y, r[2].x: variables first ... end - 1, `group` of them a member. */
+typedef struct Members {
+  int first, end, group;
+  size_t stem; /* length of the names up to the number */
+  long from;
+} Members;
+
+static int is_of_member(const lag_var *vars, const Members *f, int k) {
+  const char *name = vars[f->first + k * f->group].name;
+  return strncmp(name, vars[f->first].name, f->stem) == 0 && strtol(name + f->stem, NULL, 10) == f->from + k;
+}
+
+/* The family from the variable `first` on; its end by bisection, since members stand in a row. */
+static Members members_from(const lag_var *vars, int n, int first) {
+  Members f = {.first = first, .group = 1, .stem = strcspn(vars[first].name, "[") + 1};
+  f.from = strtol(vars[first].name + f.stem, NULL, 10);
+  while (first + f.group < n && strncmp(vars[first + f.group].name, vars[first].name, f.stem) == 0 &&
+         strtol(vars[first + f.group].name + f.stem, NULL, 10) == f.from)
+    f.group++;
+  int last = 0, beyond = (n - first) / f.group;
+  while (beyond - last > 1) {
+    int k = last + (beyond - last) / 2;
+    *(is_of_member(vars, &f, k) ? &last : &beyond) = k;
+  }
+  f.end = first + (last + 1) * f.group;
+  return f;
 }
 
 static int find_in(const lag_var *vars, int n, const char *name, size_t length) {
-  size_t stem = strcspn(name, "[") + 1;
-  for (int i = 0, tried = stem > length, at; i < n; i++) {
+  for (int i = 0, end; i < n; i = end) {
+    end = i + 1;
     if (is_called(&vars[i], name, length)) return i;
-    if (tried || vars[i].name[0] != name[0] || strncmp(vars[i].name, name, stem) != 0) continue;
-    if ((at = find_member(vars, n, i, name, length, stem)) >= 0) return at;
-    tried = 1;
+    if (end == n || vars[end].name[0] != vars[i].name[0] || !strchr(vars[i].name, '[')) continue;
+    Members f = members_from(vars, n, i);
+    end = f.end;
+    if (strncmp(vars[i].name, name, f.stem) != 0) continue;
+    long k = strtol(name + f.stem, NULL, 10) - f.from;
+    for (int at = 0; k >= 0 && k < (end - i) / f.group && at < f.group; at++)
+      if (is_called(&vars[i + (int)k * f.group + at], name, length)) return i + (int)k * f.group + at;
   }
   return -1;
 }

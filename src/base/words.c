@@ -7,11 +7,8 @@
 
 int has_word(const char *words, const char *word) {
   size_t n = strlen(word);
-  for (const char *s = words; *s; s += strspn(s, " ")) {
-    size_t len = strcspn(s, " ");
-    if (len == n && strncmp(s, word, n) == 0) return 1;
-    s += len;
-  }
+  for (const char *s = words; n && (s = strstr(s, word)) != NULL; s += n)
+    if ((s == words || s[-1] == ' ') && (s[n] == ' ' || !s[n])) return !strchr(word, ' ');
   return 0;
 }
 

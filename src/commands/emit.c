@@ -12,6 +12,6 @@ int command_emit(Compiler *c) {
   ProgramSet *u = compiler_lower_scene(c, e, 1);
   if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
-  emit_model(u, model_id(c->arena, u->name), c->o.standalone, &out);
+  emit_model(u, model_id(c->arena, u->name), c->o.standalone ? MODEL_ALONE : MODEL_PLAIN, &out);
   return compiler_write_c(c, c->o.output, &out);
 }

@@ -50,5 +50,5 @@ int command_header(Compiler *c) {
   StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);
   show_equations(e, "", PRINT_TEXT, &equations);
   emit_header(u, header_name(c, u->name), parts, sb_text(&equations), &out);
-  return compiler_write(c, c->o.output, &out);
+  return compiler_write_c(c, c->o.output, &out);
 }

@@ -241,7 +241,7 @@ Texts simulator_texts(Compiler *c, const Units *units, ProgramKind kind) {
   for (uint32_t i = 0; i < units->n; i++) {
     StrBuf b = strbuf(c->arena);
     const char *file = arena_printf(c->arena, "model_%u.c", i);
-    emit_model(units->at[i], names[i], 0, &b);
+    emit_model(units->at[i], names[i], program_names_late(kind) ? MODEL_OF_MAIN : MODEL_PLAIN, &b);
     if (i + 1 == units->n) emit_program((const ProgramSet *const *)units->at, names, units->n, kind, &b);
     for (int lanes = 4; lanes <= 8 && kind & PROGRAM_WITH_LANES; lanes *= 2)
       add_lanes(c, units->at[i], names[i], file, lanes, &texts);

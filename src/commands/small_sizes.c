@@ -129,7 +129,9 @@ static int extend_small(SmallSizes *x) {
 static int is_of_text(const Compiler *c) {
   const Options *o = &c->o;
   const int checks = o->command == CMD_CHECK && !o->json && !o->verbose && !c->ast->fars.n;
-  if (!checks && o->command != CMD_DERIVE && o->command != CMD_NOETHER && o->command != CMD_EMIT) return 0;
+  if (!checks && o->command != CMD_DERIVE && o->command != CMD_NOETHER && o->command != CMD_EMIT &&
+      o->command != CMD_HEADER)
+    return 0;
   return !o->dump && !o->fix && !o->bracket;
 }
 

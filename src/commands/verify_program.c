@@ -106,7 +106,7 @@ static const char *model_text(const Verification *v, const ProgramSet *u, const 
     if (strncmp(*f, "-D", 2) == 0 && equals)
       sb_printf(&b, "#define %.*s %s\n", (int)(equals - *f - 2), *f + 2, equals + 1);
   }
-  emit_model(u, "lag_derived", 0, &b); /* a function by hand often has the model's name */
+  emit_model(u, "lag_derived", MODEL_PLAIN, &b); /* a function by hand often has the model's name */
   for (size_t i = 0; i < sizeof verify_driver / sizeof *verify_driver; i++) sb_puts(&b, verify_driver[i]);
   sb_puts(&b, "\nint main(void) { return lag_compare(&lag_derived); }\n");
   const StrBuf whole = late_text_write(&b);

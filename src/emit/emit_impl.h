@@ -10,6 +10,7 @@ typedef struct {
   Arena *a;
   const char *const *globals; /* names that functions must not hide, NULL at the end */
   StrBuf *out;
+  StrBuf *fill; /* calls that write names of families; NULL: macros write them */
   int for_readers; /* 1: loops are written once, not for vectors too */
 } ModelFile;
 
@@ -32,7 +33,7 @@ void emit_entries(const char *name, const IrEntry *at, uint32_t n, StrBuf *out);
 void emit_families(const ModelFile *f);
 
 /* model_struct.c: appends the const lag_model called NAME, and the tables that it names. */
-void emit_model_struct(const ProgramSet *u, const char *name, StrBuf *out);
+void emit_model_struct(const ProgramSet *u, const char *name, StrBuf *fill, StrBuf *out);
 
 /* emit_scene.c: appends the functions and tables of scene `index` of the model whose lag_model is called NAME. */
 void emit_scene(const ModelFile *f, const char *name, uint32_t index);
@@ -78,10 +79,13 @@ const char *scene_id(const ProgramSet *u, uint32_t k);
  * u[2], ...) are, so that the text does not grow with the length of families; if so, table_macros must precede it.
  * */
 int table_needs_macros(const IrVar *v, uint32_t n);
+/* Whether a table of the unit is. */
+int model_has_long_tables(const ProgramSet *u);
 void table_macros(StrBuf *out);
 
-/* `static const lag_var NAME[] = {...};`, or nothing for an empty table. */
-void table_vars(const char *name, const IrVar *v, uint32_t n, Arena *a, StrBuf *out);
+/* `static const lag_var NAME[] = {...};`, or nothing for an empty table. fill: NULL, or calls that write the runs of
+ * numbered names when the program begins, since a C compiler takes long for each entry. */
+void table_vars(const char *name, const IrVar *v, uint32_t n, StrBuf *fill, Arena *a, StrBuf *out);
 
 /* Number of a table in the model's precision: digits (or NULL) if longer than the double's text; integers stay
  * plain. */

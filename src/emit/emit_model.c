@@ -430,8 +430,7 @@ static void emit_constraints(const ModelFile *f) {
 
 /* --- tables --- */
 
-/* Whether a table of the unit is written with macros. */
-static int has_long_tables(const ProgramSet *u) {
+int model_has_long_tables(const ProgramSet *u) {
   int is_long = table_needs_macros(u->q.at, u->q.n) || table_needs_macros(u->z.at, u->z.n) ||
                 table_needs_macros(u->p.at, u->p.n) || table_needs_macros(u->u.at, u->u.n);
   for (uint32_t i = 0; i < u->scenes.n; i++)
@@ -478,12 +477,14 @@ const char *model_digest(const ProgramSet *u, const char *name) {
   return late_text_digest(u->arena, sb_text(&whole), whole.n);
 }
 
-void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
-  ModelFile f = {.u = u, .a = u->arena, .globals = globals_of(u, name), .out = out};
+void emit_model(const ProgramSet *u, const char *name, ModelTextKind kind, StrBuf *out) {
+  const int alone = kind == MODEL_ALONE;
+  StrBuf fill = strbuf(u->arena), *late = kind == MODEL_OF_MAIN && model_has_long_tables(u) ? &fill : NULL;
+  ModelFile f = {.u = u, .a = u->arena, .globals = globals_of(u, name), .fill = late, .out = out};
   emit_head(u, out);
   MathText math = {u, "LAG", "lag", needs_solver(u)};
   math_of_model(&math, alone, out);
-  if (has_long_tables(u)) table_macros(out);
+  if (!late && model_has_long_tables(u)) table_macros(out);
   emit_equations(&f);
   emit_sizes(&f);
   emit_charges(&f);
@@ -497,8 +498,14 @@ void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
   emit_variation(&f);
   emit_kepler(&f);
   emit_inverse(&f);
-  emit_model_struct(u, name, out);
+  emit_model_struct(u, name, late, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, name, i);
+  if (late)
+    sb_printf(out,
+              "\n/* Names of families. */\n"
+              "void lag_app_names(lag_var *table, int first, int groups, const lag_var *pattern, int size);\n"
+              "void %s_names(void) {\n%s}\n",
+              name, sb_text(late));
   if (!alone) return;
   sb_puts(out, "\n/* ---- lag_math.h and others, of lagc ---- */\n\n");
   math_bodies(&math, out);

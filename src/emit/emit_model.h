@@ -8,11 +8,14 @@
 /* Identifier of the lag_model for a model that the user called `name`; free in <math.h> and in the emitted file. */
 const char *model_id(Arena *a, const char *name);
 
-/* Texts of emit_model and emit_accel have marks, which late_text_write replaces. */
+/* Texts of emit_model, emit_accel and emit_header have marks, which late_text_write replaces. */
 
-/* Appends one file: a lag_model called NAME (a C identifier), and a lag_scene NAME_scene for each scene. alone: of the
- * runtime's headers it includes lag_model.h only. */
-void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out);
+/* A model by itself; one whose text has all that it needs of the runtime's headers but lag_model.h; one of a program
+ * whose main() calls NAME_names(), if it has long tables (program_names_late). */
+typedef enum { MODEL_PLAIN, MODEL_ALONE, MODEL_OF_MAIN } ModelTextKind;
+
+/* Appends one file: a lag_model called NAME (a C identifier), and a lag_scene NAME_scene for each scene. */
+void emit_model(const ProgramSet *u, const char *name, ModelTextKind kind, StrBuf *out);
 
 /* Appends only the function that computes the accelerations. */
 void emit_accel(const ProgramSet *u, StrBuf *out);
@@ -24,6 +27,9 @@ typedef enum {
   PROGRAM_LIBRARY = 16,
   PROGRAM_WITH_LANES = 32
 } ProgramKind;
+
+/* Whether programs of this kind write the names of families when they begin. */
+static inline int program_names_late(ProgramKind kind) { return !(kind & (PROGRAM_LIBRARY | PROGRAM_WITH_LANES)); }
 
 /* Appends the main file of a program: a lag_program of the scenes of n units, and main() or lag_library(). names[i]:
  * the name of units[i] in emit_model. */

@@ -2,14 +2,14 @@
 #include "emit/emit_impl.h"
 #include "emit/emit_model.h"
 
-static void emit_main(ProgramKind kind, StrBuf *out) {
+static void emit_main(const char *names_first, ProgramKind kind, StrBuf *out) {
   if (kind & PROGRAM_LIBRARY) {
     sb_puts(out, "const lag_program *lag_library(void) { return &program; }\n");
     return;
   }
   int gsl = (kind & PROGRAM_WITH_GSL) != 0,
       more = (kind & (PROGRAM_WITH_PNG | PROGRAM_WITH_HDF5 | PROGRAM_WITH_MPI)) != 0;
-  sb_puts(out, "int main(int argc, char **argv) {\n");
+  sb_printf(out, "int main(int argc, char **argv) {\n%s", names_first);
   if (more) sb_printf(out, "  lag_extras extras = %s;\n", gsl ? "lag_gsl" : "{0}");
   if (kind & PROGRAM_WITH_PNG) sb_puts(out, "  extras.png = lag_png_write;\n");
   if (kind & PROGRAM_WITH_HDF5) sb_puts(out, "  extras.hdf5 = lag_hdf5_write;\n");
@@ -39,6 +39,12 @@ void emit_program(const ProgramSet *const *units, const char *const *names, uint
             ".build = LAG_BUILD,\n  .nscenes = %u, .scenes = scenes,\n%s};\n\n",
             name, doc, source, c_string(a, first->all_effects), scenes,
             lanes ? "  .lanes_4 = lanes_4, .lanes_8 = lanes_8,\n" : "");
-  emit_main(kind, out);
+  StrBuf first_calls = strbuf(a);
+  for (uint32_t i = 0; i < n && program_names_late(kind); i++)
+    if (model_has_long_tables(units[i])) {
+      sb_printf(out, "void %s_names(void);\n", names[i]);
+      sb_printf(&first_calls, "  %s_names();\n", names[i]);
+    }
+  emit_main(sb_text(&first_calls), kind, out);
   if (lanes) sb_puts(out, "#endif\n");
 }

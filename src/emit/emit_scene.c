@@ -143,8 +143,8 @@ static void emit_observe(const ModelFile *f, const IrScene *s, const char *id) {
             id, id);
 }
 
-static void emit_scene_lists(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
-  table_vars(arena_printf(u->arena, "outputs_%s", id), s->outputs.at, s->outputs.n, u->arena, out);
+static void emit_scene_lists(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *fill, StrBuf *out) {
+  table_vars(arena_printf(u->arena, "outputs_%s", id), s->outputs.at, s->outputs.n, fill, u->arena, out);
   if (s->options.n) {
     sb_printf(out, "\nstatic const lag_option options_%s[] = {\n", id);
     vec_each(const IrOption, o, s->options) {
@@ -223,7 +223,7 @@ void emit_scene(const ModelFile *f, const char *name, uint32_t index) {
   emit_start(f, s, id);
   emit_observe(f, s, id);
   emit_exact(f, s, id);
-  emit_scene_lists(u, s, id, out);
+  emit_scene_lists(u, s, id, f->fill, out);
   emit_measures(u, s, id, out);
   emit_shapes(u, s, id, out);
   if (u->constraints.of.n) emit_flags("given", id, scene_given(u, s), 2 * u->q.n + u->z.n, out);

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "emit/header_impl.h"
+#include "emit/late_text.h"
 #include "emit/header_declarations_text.h"
 
 /* --- indices --- */
@@ -33,11 +34,13 @@ static void sizes(const Header *h) {
 
 static void indices(const Header *h, const char *comment, const char **names, const IrVar *v, uint32_t n) {
   if (!n) return;
-  sb_printf(h->out, "\n/* %s */\nenum {\n", comment);
+  const char **line = ARENA_ARRAY(h->a, const char *, n);
   for (uint32_t i = 0; i < n; i++) {
     const char *text = arena_printf(h->a, "%s%s", v[i].name, unit_text(h, v[i].unit));
-    sb_printf(h->out, "  %s = %u%s /* %s */\n", names[i], i, i + 1 < n ? "," : "", comment_text(h->a, text));
+    line[i] = arena_printf(h->a, "  %s = %u%s /* %s */\n", names[i], i, i + 1 < n ? "," : "", comment_text(h->a, text));
   }
+  sb_printf(h->out, "\n/* %s */\nenum {\n", comment);
+  late_lines(h->out, line, n);
   sb_puts(h->out, "};\n");
 }
 

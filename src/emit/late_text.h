@@ -9,6 +9,9 @@
 /* LAG_EACH(first) ... LAG_EACH(end - 1), by the macros of table_macros, of which LAG_10(f, 12) is f(120) ... f(129). */
 enum { LATE_RUNS_BLOCK = 10000 }; /* the largest */
 void late_runs(StrBuf *out, uint32_t first, uint32_t end);
+/* Lines one after another. Runs of groups that differ in nothing but numbers, which grow evenly, are marks. */
+enum { MOST_IN_GROUP = 16, FEWEST_GROUPS = 32 };
+void late_lines(StrBuf *out, const char *const *line, uint32_t n);
 /* The number, or INT32_MAX where it is larger. */
 void late_int(StrBuf *out, uint64_t number);
 /* A line that declares an array REAL name[n]; where it is long, it lies in `own` of each thread. */

@@ -105,11 +105,11 @@ static void further_members(const ProgramSet *u, StrBuf *out) {
   if (u->fixed[0]) sb_printf(out, "  .fixed = %s,\n", c_string(u->arena, u->fixed));
 }
 
-void emit_model_struct(const ProgramSet *u, const char *name, StrBuf *out) {
-  table_vars("q_table", u->q.at, u->q.n, u->arena, out);
-  table_vars("z_table", u->z.at, u->z.n, u->arena, out);
-  table_vars("p_table", u->p.at, u->p.n, u->arena, out);
-  table_vars("u_table", u->u.at, u->u.n, u->arena, out);
+void emit_model_struct(const ProgramSet *u, const char *name, StrBuf *fill, StrBuf *out) {
+  table_vars("q_table", u->q.at, u->q.n, fill, u->arena, out);
+  table_vars("z_table", u->z.at, u->z.n, fill, u->arena, out);
+  table_vars("p_table", u->p.at, u->p.n, fill, u->arena, out);
+  table_vars("u_table", u->u.at, u->u.n, fill, u->arena, out);
   event_table(u, out);
   emit_curves(u, out);
   second_table(u, out);

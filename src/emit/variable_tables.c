@@ -6,8 +6,6 @@
 
 #include "base/num.h"
 
-enum { MOST_IN_GROUP = 16, FEWEST_GROUPS = 32 };
-
 void table_macros(StrBuf *out) {
   sb_puts(out, "\n/* f(i0) f(i1) ... f(i9), digits pasted: LAG_10(f, 12) is f(120) ... f(129). */\n");
   for (int block = 10; block <= LATE_RUNS_BLOCK; block *= 10) {
@@ -95,31 +93,46 @@ static const char *rest_of_entry(const IrVar *v, Arena *a) {
   return arena_printf(a, "%s, %s, %d, %d, %s},", unit, factor, v->periodic, v->sign, offset);
 }
 
-/* Text of an entry with the macro parameter i in place of its number. */
-static const char *entry_of_i(const IrVar *v, const IrVar *next, Arena *a) {
+/* Text of an entry with this in place of its number. */
+static const char *entry_of_i(const char *i, const IrVar *v, const IrVar *next, Arena *a) {
   Number n;
   counts_up(v->name, next->name, &n);
   const char *before = n.begin ? c_string(a, arena_strndup(a, v->name, n.begin)) : "",
              *after = v->name[n.end] ? c_string(a, v->name + n.end) : "";
-  return arena_printf(a, "{%s #i %s, %s", before, after, rest_of_entry(v, a));
+  return arena_printf(a, "{%s %s %s, %s", before, i, after, rest_of_entry(v, a));
 }
 
 static void write_run(const IrVar *v, uint32_t size, uint32_t groups, Arena *a, StrBuf *out) {
   Number first;
   counts_up(v[0].name, v[size].name, &first);
   sb_puts(out, "#define LAG_EACH(i)");
-  for (uint32_t k = 0; k < size; k++) sb_printf(out, " %s", entry_of_i(&v[k], &v[size + k], a));
+  for (uint32_t k = 0; k < size; k++) sb_printf(out, " %s", entry_of_i("#i", &v[k], &v[size + k], a));
   late_runs(out, first.value, first.value + groups);
   sb_puts(out, "\n#undef LAG_EACH\n");
 }
 
-void table_vars(const char *name, const IrVar *v, uint32_t n, Arena *a, StrBuf *out) {
+/* The call that fills a run of the table `to` when the program begins. */
+static void fill_run(const char *to, const IrVar *v, uint32_t size, uint32_t groups, Arena *a, StrBuf *fill) {
+  Number first;
+  counts_up(v[0].name, v[size].name, &first);
+  sb_printf(fill, "  lag_app_names(%s, %u, %u, (const lag_var[]){\n", to, first.value, groups);
+  for (uint32_t k = 0; k < size; k++) sb_printf(fill, "    %s\n", entry_of_i("\"\\1\"", &v[k], &v[size + k], a));
+  sb_printf(fill, "  }, %u);\n", size);
+}
+
+void table_vars(const char *name, const IrVar *v, uint32_t n, StrBuf *fill, Arena *a, StrBuf *out) {
   if (!n) return;
-  sb_printf(out, "\nstatic const lag_var %s[] = {\n", name);
+  int late = fill && table_needs_macros(v, n);
+  if (late) sb_printf(out, "\nstatic lag_var %s[%u] = {\n", name, n);
+  else sb_printf(out, "\nstatic const lag_var %s[] = {\n", name);
   for (uint32_t i = 0, groups = 0; i < n;) {
     uint32_t size = run_at(v + i, n - i, &groups);
-    if (size) write_run(v + i, size, groups, a, out);
-    else sb_printf(out, "  {%s, %s\n", c_string(a, v[i].name), rest_of_entry(&v[i], a));
+    if (size && late) fill_run(arena_printf(a, "%s + %u", name, i), v + i, size, groups, a, fill);
+    else if (size) write_run(v + i, size, groups, a, out);
+    else
+      sb_printf(out, "  %s{%s, %s\n", late ? arena_printf(a, "[%u] = ", i) : "", c_string(a, v[i].name),
+                rest_of_entry(&v[i], a));
+    if (i == 0 && size && late) sb_puts(out, "  {NULL, NULL, 0, 0, 0, 0},\n");
     i += size ? size * groups : 1;
   }
   sb_puts(out, "};\n");

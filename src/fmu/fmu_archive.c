@@ -6,6 +6,7 @@
 #include "base/hash.h"
 #include "emit/cfunction.h"
 #include "emit/emit_model.h"
+#include "emit/late_text.h"
 #include "fmu/core_text.h" /* static const char *const core_text[]: generated from core.in */
 #include "fmu/cosimulation_text.h"
 #include "fmu/exchange_text.h"
@@ -196,6 +197,7 @@ int fmu_make(const ProgramSet *u, int version, const char *equations, Fmu *f, co
              .moreau = moreau};
   StrBuf header = strbuf(a), all = strbuf(a), wrapper = strbuf(a), description = strbuf(a);
   emit_header(u, "model", parts, equations, &header);
+  header = late_text_write(&header);
   f->header = sb_text(&header);
   sb_puts(&all, f->header);
   write_wrapper(u, f, &all);

@@ -63,16 +63,23 @@ MODEL
 }
 
 table
+# nothing is known of a run: "$TMP/anew" COMMAND...
+# shellcheck disable=SC2016 # for the script
+printf '#!/bin/sh\nrm -rf "$XDG_CACHE_HOME"\nexec "$@"\n' >"$TMP/anew"
+chmod +x "$TMP/anew"
+XDG_CACHE_HOME=$TMP/cache
+export XDG_CACHE_HOME
+
 # ---- lagc check, derive, noether
 # grows WHAT KIND FEW MANY [COMMAND [WORD...]]: slopes of the logarithms of CPU time and memory against log N. The memory for N = 4 is subtracted.
 grows() {
   command=${5:-check} what=$1 kind=$2 few=$3 many=$4
   shift $(($# < 5 ? $# : 5))
   grown_model "$kind" 4 >"$TMP/grows.lag"
-  floor=$(kilobytes 1 "$LAGC" "$command" "$TMP/grows.lag" "$@")
+  floor=$(kilobytes 1 "$TMP/anew" "$LAGC" "$command" "$TMP/grows.lag" "$@")
   for n in "$few" "$many"; do
     grown_model "$kind" "$n" >"$TMP/grows.lag"
-    echo "$n $(seconds 2 "$LAGC" "$command" "$TMP/grows.lag" "$@") $(kilobytes 1 "$LAGC" "$command" "$TMP/grows.lag" "$@")"
+    echo "$n $(seconds 2 "$TMP/anew" "$LAGC" "$command" "$TMP/grows.lag" "$@") $(kilobytes 1 "$TMP/anew" "$LAGC" "$command" "$TMP/grows.lag" "$@")"
   done >"$TMP/grown"
   slopes=$(awk -v floor="$floor" '{ n[NR] = log($1); s[NR] = log($2 + 1e-3); k[NR] = log($3 - floor + 1) }
     END { d = n[2] - n[1]; printf "%.2f %.2f", (s[2] - s[1])/d, (k[2] - k[1])/d }' "$TMP/grown")
@@ -86,10 +93,17 @@ grows 'N scenes' scenes 1000 8000
 grows 'N outputs' outputs 10000 100000
 grows 'N bodies, a sum over all pairs,' bodies 1000 10000 derive
 grows 'N bodies, a sum over all pairs,' bodies 100 1000 noether
-export XDG_CACHE_HOME=/dev/null # no run is known
 grows 'one step of N masses that turn' turning 2000 20000 run --until 0.001 --every 0.001 --compile never -o "$TMP/grows.csv"
 grows 'two runs of N masses that turn' turning 1000 10000 sweep c=1,2 --until 0.001 --compile never -o "$TMP/grows.csv"
 grows 'N masses that turn' turning 1000 10000 header -o "$TMP/grows.h"
+
+# ---- lagc run, compiled: what a run costs before its motion, which the same run again has alone
+for n in 100 1000 10000; do
+  set -- "$LAGC" run tests/bench/models/bodies.lag -DN="$n" --compile always --until 0.001 --every 0.001 -o "$TMP/grows.csv"
+  echo "$(seconds 1 "$TMP/anew" "$@") $(seconds 1 "$@")" >"$TMP/grown"
+  row "lagc run, N = $n bodies, one step, nothing kept, less the motion, s" '' "$(awk '{ print $1 " - " $2 }' "$TMP/grown")" \
+    "$(awk '{ printf "%.2f", $1 - $2 }' "$TMP/grown")" '' ''
+done
 unset XDG_CACHE_HOME
 
 # ---- families from 2048 members on, whose texts follow from small ones: time and memory do not depend on N

@@ -67,10 +67,15 @@ charge="Q1 = sum(i in 1..2100, k*x[i]'^2/2) + sum(i in 1..2100, h*cos(x[i])) + h
 spends() { "$LAGC" noether "$TMP/spent.lag" -D N=2100 >"$TMP/spent.out" 2>&1 && grep -qF "$charge" "$TMP/spent.out" && [ "$(grep -c 'Q1 =' "$TMP/spent.out")" = 2 ]; }
 check 'its charge is that of the model and what the effect adds' spends
 
+# headers, whose lists of names are as long as the families
+for file in pairs ring parity mod few scales band part tree rate spent; do check "header, $file, N = 2234" even header $file.lag 2234; done
+check 'header, pairs, N = 4096' even 'header --with names' pairs.lag 4096
+
 # ---- neither time nor memory depends on the size; 60 MB hold some 300 coordinates, and 10^6 take 3 GB
 bounded() { (ulimit -v 60000 && "$LAGC" "$@" >"$TMP/bounded.out" 2>&1) || { tail -3 "$TMP/bounded.out"; return 1; }; }
 if [ -z "${SAN:-}" ] && (ulimit -v 60000) 2>/dev/null; then
   for command in emit check derive noether; do check "$command of 10^6 bodies in 60 MB" bounded $command "$TMP/pairs.lag" -D N=1000000; done
+  check 'header of 20,000 bodies in 60 MB' bounded header "$TMP/pairs.lag" -D N=20000 -o "$TMP/bounded.h"
 fi
 # projections onto a constraint over all members sum no pairs, and its row fills no matrix: 0.1 s of 3, where either takes 5 and more
 text centred 'param m[N] = 1 > 0' "kinetic = sum(i in 1..N, m[i]/2*x[i]'^2)" "$pairs" 'constraint com: sum(i in 1..N, m[i]*x[i]) = 0'

@@ -179,7 +179,7 @@ static void emit(Ast *ast, Eqns *e) {
   emit_header(u, u->name, (HeaderParts){0}, sb_text(&text), &header);
   unit_hoist(u);
   verify_all(u);
-  emit_model(u, model_id(a, u->name), 0, &c);
+  emit_model(u, model_id(a, u->name), MODEL_PLAIN, &c);
 }
 
 /* Coordinates beyond which a search for symmetries takes seconds under sanitizers: seeds are searched, for which the

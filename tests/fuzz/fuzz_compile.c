@@ -33,7 +33,7 @@ static void write_everything(Arena *a, Eqns *e) {
   if (u->variation && (prog_verify(u->variation) || prog_verify(u->second))) abort();
   if (prog_verify(u->scenes.at[0].observe)) abort();
   StrBuf c = strbuf(a), text = strbuf(a), latex = strbuf(a);
-  emit_model(u, cname(a, u->name), 0, &c);
+  emit_model(u, cname(a, u->name), MODEL_PLAIN, &c);
   const char *cost = op_count_text(u->accel, a);
   show_equations(e, cost, PRINT_TEXT, &text);
   show_equations(e, cost, PRINT_LATEX, &latex);

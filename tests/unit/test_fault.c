@@ -62,7 +62,7 @@ static void emit_all(Arena *a, Eqns *e) {
   unit_require(u, e, WANT_VARIATION);
   unit_add_scene(u, e);
   StrBuf out = strbuf(a), text = strbuf(a);
-  emit_model(u, cname(a, u->name), 0, &out);
+  emit_model(u, cname(a, u->name), MODEL_PLAIN, &out);
   const char *cost = op_count_text(u->accel, a);
   show_equations(e, cost, PRINT_TEXT, &text);
   show_equations(e, cost, PRINT_LATEX, &out);

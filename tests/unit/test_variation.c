@@ -214,7 +214,7 @@ static const char *emitted(Arena *arena, unsigned wants) {
   unit_require(u, e, wants);
   unit_add_scene(u, e);
   StrBuf out = strbuf(arena);
-  emit_model(u, "m", 0, &out);
+  emit_model(u, "m", MODEL_PLAIN, &out);
   return sb_text(&out);
 }
 
