@@ -120,7 +120,20 @@ scene s {
   span 1
 }
 MODEL
+rotors_of() { cat <<MODEL; }
+model rotors "N rotors, each pulled by all the others, by forces"
+const N = 100
+coord a[N] [rad]
+param J = 1 [kg*m^2] > 0, K = 2 [N*m] > 0, c = 1 [N*m*s] > 0
+kinetic = sum(i in 1..N, J/2*a[i]'^2)
+for i in 1..N { force a[i] = K*sum(j in 1..N, sin(a[j] - a[i])) - c*a[i]' }
+scene s {
+  start a[i in 1..N] = sin(i*i)
+  span 1 [s]
+}
+MODEL
 ring_of >"$TMP/ring.lag"
+rotors_of >"$TMP/rotors.lag"
 # even COMMAND WHAT FILE SECONDS MB: least time and memory at N = 200, 10^4, 10^5
 even() {
   for n in 200 10000 100000; do
@@ -138,6 +151,8 @@ even check 'N bodies' tests/bench/models/bodies.lag 0.1 30
 even derive 'N bodies' tests/bench/models/bodies.lag 0.1 30
 even check 'a ring' "$TMP/ring.lag" 0.2 100
 even noether 'a ring' "$TMP/ring.lag" 0.2 100
+even emit 'rotors with forces' "$TMP/rotors.lag" 0.1 30
+even check 'rotors with forces' "$TMP/rotors.lag" 0.2 100
 
 # ---- lagc noether: xi of N bodies in space has 9 N^2 + 3 N coefficients, where each may move in its own way
 for n in 8 16; do echo "$n $(seconds 2 "$LAGC" noether tests/bench/models/bodies.lag -DN="$n")"; done >"$TMP/grown"
