@@ -279,6 +279,7 @@ static void fill_input(Builder *b, const AstStmt *st, Name effect) {
 
 static void apply_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
   Energies *en = data;
+  b->keeps_rows = st->kind == STMT_FORCE || st->kind == STMT_FLOW;
   switch (st->kind) {
     case STMT_MOMENTUM: case STMT_HAMILTONIAN: add_phase_space(b, st, effect, en); return;
     case STMT_LAGRANGIAN: case STMT_KINETIC: case STMT_POTENTIAL: case STMT_DISSIPATION:

@@ -185,6 +185,7 @@ struct Builder {
   int64_t more;       /* as in ModelChoice */
   InputRates *rates_wanted;
   VEC(FamilySum) family_sums;
+  int keeps_rows; /* the statement is a force or a flow, whose sums may be rows of a nest */
 };
 
 /* Evaluates an expression of the text; after an error, reported, the value has e = 0. */

@@ -11,7 +11,7 @@ static const IndexVar *index_around(const Eval *ev, int64_t *range) {
   const uint32_t outer = ev->in_statement ? b->index.n : 0;
   const int is_definition = ev->kind == ENT_LET || ev->kind == ENT_OBSERVE;
   if (ev->index.n + outer != 1 || ev->function || ev->loops.n || ev->sums || ev->where < IN_DYNAMICS) return NULL;
-  const int64_t *from = outer ? b->for_range : NULL;
+  const int64_t *from = outer && b->keeps_rows ? b->for_range : NULL;
   if (is_definition && !outer) from = (ev->kind == ENT_LET ? b->lets : b->observes).at[ev->definition].range;
   if (!from || from[0] == from[1]) return NULL;
   memcpy(range, from, 2 * sizeof *range);
