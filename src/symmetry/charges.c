@@ -308,8 +308,8 @@ const char *charges_energy_text(const Eqns *e) {
       is->drift == PROVED_NONZERO ? "energy changes"
       : is->open_integral == 2    ? "not decided whether the energy is conserved; with a potential of the forces, "
                                     "an integral that is not found, it is"
-      : is->open_integral == 3    ? "not decided whether the energy is conserved; forces couple many coordinates, and no "
-                                    "potential of theirs is looked for: if they have one, give it as `potential`"
+      : is->open_integral == 3    ? "not decided whether the energy is conserved; forces couple many coordinates, and "
+                                    "no potential of theirs is looked for: if they have one, give it as `potential`"
       : is->open_integral         ? "not decided whether the energy is conserved; it is if one potential of the forces "
                                     "holds everywhere, as it does near each position"
                                   : "not decided whether the energy is conserved";
