@@ -105,7 +105,8 @@ static void symmetry(Page *p, uint32_t k) {
   say(p, s->is.power_unknown
              ? "  not decided whether it changes: L depends on an input whose rate of change is not known"
          : s->is.open_integral == 3
-             ? "  not decided whether it changes: forces couple many coordinates, and no potential of theirs is looked for"
+             ? "  not decided whether it changes: forces couple many coordinates, and no potential of theirs is "
+               "looked for"
          : s->is.open_integral
              ? "  not decided whether it changes: forces that have a potential change it by its rate"
              : "  not decided whether it changes: this rate is neither proved to be 0 nor seen not to be");
