@@ -1,6 +1,8 @@
 /* Sums over all pairs (i, j) of a square, as those that each member of a family has, taken once for (i, j) and (j, i):
  * what the two have in common, a distance or an odd function, is computed once. */
 #include "lower/lower_impl.h"
+#include "sym/expr_eval.h"
+#include "sym/prove.h"
 #include "sym/sum_nest.h"
 
 typedef struct {
@@ -54,6 +56,25 @@ static int find_mirrors(Square *q) {
   return 1;
 }
 
+/* Whether the values vanish for i = j, as where a condition says so, and not because 0 times 1/0 does. */
+static int vanish_on_diagonal(const Square *q, const Expr *values, uint32_t n) {
+  ExprGraph *g = q->g;
+  Arena *a = expr_arena(g);
+  Expr *there = ARENA_ARRAY(a, Expr, n + 1);
+  long double *symbols = ARENA_ARRAY(a, long double, expr_symbol_count(g) + 1);
+  long double *at = ARENA_ARRAY(a, long double, n + 1);
+  expr_replace_nodes(g, values, n, q->symbol, q->row, q->half.nreads, there);
+  for (uint32_t k = 0; k < n; k++)
+    if (!expr_is_zero(g, there[k])) return 0;
+  sample_state(g, 1, symbols);
+  for (uint32_t k = 0; k < q->half.nreads; k++)
+    symbols[q->reads[k].symbol] = symbols[expr_sym_id(g, q->row[k])];
+  expr_eval(g, values, n, symbols, at);
+  for (uint32_t k = 0; k < n; k++)
+    if (at[k] != 0) return 0;
+  return 1;
+}
+
 /* Decides comparisons of i and j in `values` for j below i. */
 static void decide_below(const Square *q, Expr *values, uint32_t n) {
   ExprGraph *g = q->g;
@@ -92,11 +113,9 @@ const SumNest *nest_half(ExprGraph *g, Expr nest) {
               .row = ARENA_ARRAY(a, Expr, 2 * s->nreads + 1)};
   if (s->nreads) memcpy(q.reads, s->reads, s->nreads * sizeof *q.reads);
   if (!find_mirrors(&q)) return NULL;
-  Expr *values = ARENA_ARRAY(a, Expr, 2 * n + 1), *diagonal = ARENA_ARRAY(a, Expr, n + 1);
+  Expr *values = ARENA_ARRAY(a, Expr, 2 * n + 1);
   for (uint32_t k = 0; k < n; k++) values[k] = s->shares[k].value;
-  expr_replace_nodes(g, values, n, q.symbol, q.row, q.half.nreads, diagonal);
-  for (uint32_t k = 0; k < n; k++)
-    if (!expr_is_zero(g, diagonal[k])) return NULL;
+  if (!vanish_on_diagonal(&q, values, n)) return NULL;
   expr_replace_nodes(g, values, n, q.symbol, q.mirror, q.half.nreads, values + n);
   decide_below(&q, values, 2 * n);
   if (!share_nodes(g, values, n)) return NULL;

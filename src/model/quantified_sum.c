@@ -302,7 +302,8 @@ static Expr component_sum(Eval *ev, struct Quantified *q, uint32_t c) {
 int quantified_counts(const Eval *ev, const AstExpr *name) {
   const struct Quantified *q = ev->sums;
   AstId id = (AstId)(name - ev->b->ast->exprs.at);
-  return q && !q->pairs && id >= q->first && id <= ast_expr(ev->b->ast, q->outer)->c && q->counts[id - q->first];
+  return q && !q->pairs && q->pass < REPRESENTATIVES && id >= q->first && id <= ast_expr(ev->b->ast, q->outer)->c &&
+         q->counts[id - q->first];
 }
 
 /* Whether a read is of the family of an earlier one. */
@@ -403,10 +404,21 @@ static void take_pair(Eval *ev, const struct Quantified *q) {
   if (of_family) last[-1].at = q->pair[q->pass][0];
 }
 
+/* A turn in which i and j are one, where there is any: 1/(x[i] - x[j]) is a mistake there. */
+static int has_diagonal(const struct Quantified *q, int64_t *pair) {
+  for (int64_t row = 0; q->inner && row < q->range.rows; row++) {
+    const int64_t i = q->lo + row, from = q->from.first + q->from.by_i * i;
+    pair[0] = pair[1] = i;
+    if (i >= from && i < from + loop_turns(&q->range, row)) return 1;
+  }
+  return 0;
+}
+
 void quantified_start(Eval *ev, struct Quantified *q) {
   Builder *b = ev->b;
   Name name = ast_expr(b->ast, q->outer)->name;
   q->sampled = has_many_turns(q, q->turns);
+  q->passes = REPRESENTATIVES + has_diagonal(q, q->pair[REPRESENTATIVES]);
   for (int k = 0; k < COMPONENTS; k++) q->inside[k] = expr_declare(b->g, SYM_LOCAL, 0, name, SIGN_UNKNOWN);
   ev->sums = q;
   vec_push(b->arena, &ev->loops, ((Loop){q->outer, 0, 0, ev->terms.n, 0, 0}));
@@ -506,8 +518,9 @@ static int far_angle(Eval *ev, struct Quantified *q) {
 }
 
 /* The value of the sum, of both representatives, and whether it stays one: e is 0 where it does not. */
-static Value value_of_sum(Eval *ev, struct Quantified *q, const Value *v) {
+static Value value_of_sum(Eval *ev, struct Quantified *q) {
   Builder *b = ev->b;
+  const Value *v = &q->whole[REPRESENTATIVES - 1];
   Value r = *v;
   const int of_family = quantified_of_family(q);
   if (q->far && !far_angle(ev, q)) q->failed = 1, r.e = 0;
@@ -536,7 +549,7 @@ int quantified_next(Eval *ev, Value *v) {
   q->whole[q->pass] = *v;
   if (!q->inner) q->body[q->pass] = *v;
   int failed = !v->e || !q->body[q->pass].e;
-  if (!failed && ++q->pass < REPRESENTATIVES) {
+  if (!failed && ++q->pass < q->passes) {
     take_pair(ev, q);
     return 1;
   }
@@ -544,7 +557,7 @@ int quantified_next(Eval *ev, Value *v) {
   const int of_family = quantified_of_family(q);
   if (of_family) ev->index.at[ev->index.n - 2] = ev->index.at[ev->index.n - 1], ev->index.n--;
   if (failed) return 0;
-  Value r = value_of_sum(ev, q, v);
+  Value r = value_of_sum(ev, q);
   if (q->failed) return *v = FAILED, 0;
   if (r.e && !q->beside) {
     *v = r;

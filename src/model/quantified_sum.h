@@ -3,7 +3,7 @@
 
 #include "model/resolve_impl.h"
 
-enum { REPRESENTATIVES = 2, COMPONENTS = 3 };
+enum { REPRESENTATIVES = 2, COMPONENTS = 3, PASSES = REPRESENTATIVES + 1 };
 
 /* Whole number that is affine in i and j. */
 typedef struct {
@@ -38,9 +38,9 @@ struct Quantified {
   int sampled;        /* the self-check takes a sample of the turns */
   const char *why;    /* reason why there is no such form, and where: for a note */
   AstId where;
-  int64_t pair[REPRESENTATIVES][2]; /* i and j */
-  int pass;
-  Value body[REPRESENTATIVES], whole[REPRESENTATIVES];
+  int64_t pair[PASSES][2]; /* i and j; the last is i = j, evaluated for its mistakes alone */
+  int pass, passes;
+  Value body[PASSES], whole[PASSES];
   int beside;         /* the outer terms have more than the inner sum: they are written out, with `pairs` at the end */
   Expr pairs;
   SymId inside[COMPONENTS]; /* stand for the inner sum in the whole */
