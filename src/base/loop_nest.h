@@ -18,6 +18,9 @@ static inline int64_t subscript_at(const Subscript *x, int64_t i, int64_t j) {
   return x->first + x->by_row * i + x->by_turn * j;
 }
 
+/* That with i and j exchanged. */
+static inline Subscript subscript_exchanged(Subscript x) { return (Subscript){x.first, x.by_turn, x.by_row}; }
+
 /* Turns of row i, at least 0; first turn of row i, and one past its last. */
 static inline int64_t loop_turns(const LoopRange *r, int64_t i) {
   int64_t n = r->turns + r->more * i;

@@ -153,18 +153,19 @@ static void term(Printer *p, Expr e, Num c) {
   if (latex(p)) text(p, "}");
 }
 
-/* Terms of a quantified sum, of the opposite signs if `minus`, behind others unless `leads`. */
-static void cell_terms(Printer *p, Expr e, int minus, int leads) {
+/* Terms of a quantified sum, of the opposite signs if `minus`, behind others unless `leads`; signs inside the sums. */
+static void cell_terms(Printer *p, Expr e, int minus, int leads, int inside) {
   SumTerms terms = expr_sum_terms(p->g, e);
   for (uint32_t k = 0; k < terms.n; k++) {
     const SumTerm *t = &terms.at[k];
-    int first = leads && !k, negative = t->minus != minus;
+    int first = leads && !k, negative = !inside && t->minus != minus;
     text(p, negative ? (first ? "-" : " - ") : first ? "" : " + ");
     for (int n = 0; n < 2; n++)
       if (t->index[n])
         text(p, arena_printf(p->g->arena, by_style(p, "sum(%s in %s..%s, ", "\\sum_{%s=%s}^{%s} "), t->index[n],
                              t->from[n], t->to[n]));
-    node(p, t->body, latex(p) || !t->index[0] ? PREC_PROD : PREC_OR);
+    Expr body = inside && t->minus ? expr_neg(p->g, t->body) : t->body;
+    node(p, body, latex(p) || !t->index[0] ? PREC_PROD : PREC_OR);
     for (int n = 0; n < 2; n++)
       if (t->index[n]) text(p, by_style(p, ")", ""));
   }
@@ -181,7 +182,7 @@ static void sum(Printer *p, Expr e) {
   for (uint32_t i = 0; i < n; i++) {
     Expr t = expr_pair(g, e, EX_SUM, i == 0 ? lead : i <= lead ? i - 1 : i, &c);
     if (expr_op(g, t) == EX_CELL && num_is_one(num_abs(c))) {
-      cell_terms(p, t, num_sign(c) < 0, !i);
+      cell_terms(p, t, num_sign(c) < 0, !i, 0);
       continue;
     }
     if (i) text(p, num_sign(c) < 0 ? " - " : " + ");
@@ -243,6 +244,13 @@ static Prec prec_of_cell(const Printer *p, Expr e) {
   return terms.n > 1 || (terms.n && terms.at[0].minus) ? PREC_SUM : latex(p) ? PREC_PROD : PREC_ATOM;
 }
 
+/* Whether it is one sum over an index, with a sign in front. */
+static int is_negative_sum(const Printer *p, Expr e) {
+  if (expr_op(p->g, e) != EX_CELL) return 0;
+  SumTerms terms = expr_sum_terms(p->g, e);
+  return terms.n == 1 && terms.at[0].minus && terms.at[0].index[0];
+}
+
 static Prec prec_of(const ExprGraph *g, Expr e) {
   switch (expr_op(g, e)) {
     case EX_NUM: {
@@ -276,7 +284,7 @@ static void expand(Printer *p, Expr e) {
     case EX_SUM: sum(p, e); return;
     case EX_PROD: term(p, e, num_int(1)); return;
     case EX_NEST: return;
-    case EX_CELL: cell_terms(p, e, 0, 1); return;
+    case EX_CELL: cell_terms(p, e, 0, 1, 0); return;
     case EX_POW:
       node(p, expr_arg(g, e, 0), PREC_ATOM);
       text(p, by_style(p, "^", "^{"));
@@ -316,11 +324,13 @@ void expr_print(ExprGraph *g, Expr e, PrintStyle style, StrBuf *out) {
       continue;
     }
     Prec prec = expr_op(g, top.node) == EX_CELL ? prec_of_cell(&p, top.node) : prec_of(g, top.node);
-    int group = prec < top.prec;
+    int group = prec < top.prec, inside = group && is_negative_sum(&p, top.node); /* K*sum(j in 1..N, -sin(x[j])) */
+    if (inside) group = latex(&p);
     p.part.n = 0;
     int flat = group && is_flat(g, top.node);
     if (group) text(&p, flat ? "(" : by_style(&p, "(", "\\left("));
-    expand(&p, top.node);
+    if (inside) cell_terms(&p, top.node, 0, 1, 1);
+    else expand(&p, top.node);
     if (group) text(&p, flat ? ")" : by_style(&p, ")", "\\right)"));
     for (uint32_t i = p.part.n; i-- > 0;) vec_push(g->arena, &p.stack, p.part.at[i]);
   }

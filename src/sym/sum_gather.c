@@ -83,6 +83,16 @@ static Expr whole_body(Gather *x) {
   return body;
 }
 
+/* Half of the body and of what turn (j, i) has, where both are turns: what pairs do to each other may vanish. */
+static Expr with_mirror(ExprGraph *g, Expr nest, Expr body) {
+  SumMirror m;
+  Expr other;
+  if (!body || !expr_sum_mirror(g, nest, &m)) return body;
+  expr_replace_nodes(g, &body, 1, m.symbol, m.mirror, m.n, &other);
+  Expr sum = expr_add(g, body, other);
+  return expr_scale(g, num_ratio(1, 2), sum);
+}
+
 Expr expr_gather_sum(ExprGraph *g, Expr e, Expr *rest) {
   Gather x = {.g = g};
   Expr factor;
@@ -110,5 +120,6 @@ Expr expr_gather_sum(ExprGraph *g, Expr e, Expr *rest) {
   *rest = expr_add_n(g, g->terms.at, g->terms.n);
   x.syms = ARENA_ARRAY(g->arena, SymId, x.s->nreads + 1);
   x.with = ARENA_ARRAY(g->arena, Expr, x.s->nreads + 1);
-  return whole_body(&x);
+  Expr body = whole_body(&x);
+  return with_mirror(g, x.nest, body);
 }

@@ -46,6 +46,16 @@ int expr_open_sums(ExprGraph *g, Expr *e);
 /* The same for the cells of a list. */
 void expr_write_out(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *cells, uint32_t ncells, Expr *out);
 
+/* sum_mirror.c: the reads of a nest over all pairs of a square, and those with i and j exchanged, which are appended where
+ * the nest has none; nodes of their symbols, and of those of their mirrors, to be put for them. 0: it is another nest,
+ * or reads at sums of i and j. */
+typedef struct {
+  uint32_t n;
+  NestRead *reads;
+  Expr *symbol, *mirror; /* [n] */
+} SumMirror;
+int expr_sum_mirror(ExprGraph *g, Expr nest, SumMirror *to);
+
 /* sum_gather.c: the body whose sum over all turns is what the cells of one nest contribute to the sum e, linear in
  * them; *rest: the other terms. 0: e has no cells, or their factors differ from turn to turn. */
 Expr expr_gather_sum(ExprGraph *g, Expr e, Expr *rest);
