@@ -46,9 +46,9 @@ int expr_open_sums(ExprGraph *g, Expr *e);
 /* The same for the cells of a list. */
 void expr_write_out(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *cells, uint32_t ncells, Expr *out);
 
-/* sum_mirror.c: the reads of a nest over all pairs of a square, and those with i and j exchanged, which are appended where
- * the nest has none; nodes of their symbols, and of those of their mirrors, to be put for them. 0: it is another nest,
- * or reads at sums of i and j. */
+/* sum_mirror.c: the reads of a nest over all pairs of a square, and those with i and j exchanged, which are appended
+ * where the nest has none; nodes of their symbols, and of those of their mirrors, to be put for them. 0: it is another
+ * nest, or reads at sums of i and j. */
 typedef struct {
   uint32_t n;
   NestRead *reads;

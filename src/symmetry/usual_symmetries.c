@@ -93,7 +93,7 @@ static void try_turn(TrialWork *w, uint32_t axis) {
 
 /* The momentum of each cyclic coordinate; 0: they are too many to be listed one by one. */
 static int try_cyclic(TrialWork *w) {
-  enum { LISTED_MOST = 100 };
+  enum { LISTED_MOST = 200 };
   uint32_t cyclic = 0;
   for (uint32_t i = 0; i < w->n && w->e->n; i++) cyclic += (uint32_t)expr_is_zero(w->g, w->e->dLdq[i]);
   for (uint32_t i = 0; i < w->n && w->e->n && cyclic <= LISTED_MOST; i++) {
