@@ -19,10 +19,13 @@ enum { PLACES_A_STEP = 4 };
 static const double no_digit = 0.3;
 
 int lag_error_estimate_init(ErrorEstimate *e, const lag_sim *sim) {
-  enum { FEW = 64 }; /* unknowns */
+  enum { FEW = 64 };                                                     /* unknowns */
+  const int fewest = 64, most = LAG_ERROR_PLACES / 8, numbers = 1 << 23; /* 64 MiB */
   const lag_model *m = lag_sim_scene(sim)->model;
-  *e = (ErrorEstimate){.stride = 1, .largest = NAN, .horizon = NAN, .known_to = NAN, .t0 = lag_sim_time(sim)};
-  e->room = sim->pb.n <= FEW ? LAG_ERROR_PLACES : LAG_ERROR_PLACES / 8;
+  *e = (ErrorEstimate){.stride = 1, .whole = 1, .largest = NAN, .horizon = NAN, .known_to = NAN};
+  e->t0 = lag_sim_time(sim);
+  int room = numbers / (sim->pb.n + 1);
+  e->room = sim->pb.n <= FEW ? LAG_ERROR_PLACES : room > most ? most : room < fewest ? fewest : room;
   int rc = lag_samples_init(&e->motion, e->room, 2 * m->nq + m->nz);
   e->motion.rows = 0;
   return rc;
@@ -338,6 +341,7 @@ static double clock_error(lag_sim *sim, const double *scale, double *rates) {
  * their errors: rows between, where one has met it and the other has not, say nothing, unless they go on. */
 static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale, double *rates) {
   enum { LONG = 4 };
+  const double visible = 1e-8; /* beside rounding of the time, which costs an evaluation */
   Parting parting = {.t = NAN};
   double apart = 0, skipped = 0; /* of the counts of events; largest error of rows that differ */
   int n = 0;                     /* rows in turn that differ */
@@ -348,7 +352,7 @@ static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale, d
     if (parted) e->horizon = parting.t;
     if (rc) return rc;
     double now = e->met[i] - other->run->events, *y = e->motion.y + (size_t)i * (size_t)e->motion.n;
-    double error = lag_cost_row_error(e->motion.n, y, other->now, scale);
+    double error = e->whole * lag_cost_row_error(e->motion.n, y, other->now, scale);
     n = now == apart ? 0 : n + 1;
     skipped = n > 0 ? fmax(skipped, error) : 0;
     if (n > 0 && n < LONG) {
@@ -358,7 +362,7 @@ static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale, d
     if (n > 0) apart = now;
     e->error[i] = error;
     e->largest = fmax(e->largest, fmax(error, skipped));
-    e->floor = fmax(e->floor, clock_error(other, scale, rates));
+    if (e->whole == 1 || error < visible) e->floor = fmax(e->floor, clock_error(other, scale, rates));
     if (is_confirmed(e, &parting, e->motion.t[i], e->error[i], i + 1 == e->motion.rows)) e->horizon = parting.t;
   }
   return LAG_OK;
@@ -395,7 +399,9 @@ int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until) {
   if (isnan(e->largest) && !e->why[0] && !e->motion.rows)
     snprintf(e->why, sizeof e->why, "the run ended at an event in its first step");
   if (isnan(e->largest) && !e->why[0])
-    snprintf(e->why, sizeof e->why, "a second run reached only t = %.3g s", lag_sim_time(other));
+    snprintf(e->why, sizeof e->why,
+             "a second run reached only t = %.3g s; compare with a run of half the step or a smaller tolerance",
+             lag_sim_time(other));
   return LAG_OK;
 }
 

@@ -24,6 +24,7 @@ typedef struct ErrorEstimate {
   int compared;          /* rows that the second run reached, */
   double met[LAG_ERROR_PLACES]; /* [rows] events of the run before each place */
   int continued;         /* 1: fewer than all; exponential growth goes on to known_to */
+  double whole;          /* error of the run per difference of the two; 1: the second run has none */
   int rough;             /* 1: errors at a few times only, where laws are a guess */
   int drifts;            /* 1: a charge of the run drifts with a trend */
   double largest;        /* largest error up to known_to; NaN: no estimate */

@@ -23,19 +23,36 @@ static int add_noise(lag_sim *sim, double t, const double *y, double *noise, dou
   return 0;
 }
 
-/* The rate whose rounding is the largest part of the sizes of its kind. beside[nq]: size of accelerations that are
- * rounding: velocities of the energy's size, in the time of the run. */
-static FormulaNoise worst_rate(lag_sim *sim, const double *noise, double *size, const double *beside, int states) {
-  const double rest = 0.2; /* accelerations of rounding alone have a third, and those that are seen have no floor */
-  FormulaNoise worst = {.of = -1};
+/* The largest size of each kind of rate. */
+static void share_sizes(const lag_sim *sim, double *size) {
   int nq = sim->pb.nq, n = sim->pb.n;
   for (int pass = 0; pass < 2; pass++)
     for (int k = nq; k < n; k++) {
       int i = pass ? n - 1 - (k - nq) : k, alike = lag_previous_alike(sim, i);
       if (alike >= 0) size[pass ? alike : i] = fmax(size[i], size[alike]);
     }
-  for (int i = nq; i < n; i++) {
-    if (i < 2 * nq && noise[i] / states > rest * size[i]) size[i] = lag_above_rounding(size[i], beside[i - nq]);
+}
+
+/* Accelerations of rounding alone have a third, and those that are seen have no floor. */
+static int is_all_noise(double noise, double size) { return noise > 0.2 * size; }
+
+/* size[] of accelerations that are rounding := at least what velocities of the energy's size make in the time of the
+ * run, at its middle. v[nq]: scratch. */
+static void raise_sizes(lag_sim *sim, const Samples *motion, const double *noise, double *size, int states, double *v) {
+  int nq = sim->pb.nq, last = motion->rows - 1, row = motion->rows / 2, some = 0;
+  double span = fabs(motion->t[last] - sim->scene->t0);
+  for (int i = nq; i < 2 * nq; i++) some |= is_all_noise(noise[i] / states, size[i]);
+  if (!some) return;
+  lag_velocity_terms(sim, motion->t[row], motion->y + (size_t)row * (size_t)motion->n, lag_step_so_far(sim), v);
+  for (int i = nq; i < 2 * nq; i++)
+    if (is_all_noise(noise[i] / states, size[i]))
+      size[i] = lag_above_rounding(size[i], span > 0 ? v[i - nq] / span : HUGE_VAL);
+}
+
+/* The rate whose rounding is the largest part of the sizes of its kind. */
+static FormulaNoise worst_rate(const lag_sim *sim, const double *noise, const double *size, int states) {
+  FormulaNoise worst = {.of = -1};
+  for (int i = sim->pb.nq; i < sim->pb.n; i++) {
     double part = size[i] > 0 ? noise[i] / states / size[i] : 0;
     if (part > worst.part) worst = (FormulaNoise){.of = i, .part = part};
   }
@@ -55,10 +72,9 @@ int lag_formula_noise(lag_sim *sim, const Samples *motion, FormulaNoise *worst) 
     states += !add_noise(sim, motion->t[row], motion->y + (size_t)row * (size_t)n, noise, size, size + n);
   }
   if (states) {
-    double *v = size + n, span = fabs(motion->t[rows - 1] - sim->scene->t0);
-    lag_velocity_terms(sim, motion->t[rows / 2], motion->y + (size_t)(rows / 2) * (size_t)n, lag_step_so_far(sim), v);
-    for (int i = 0; i < sim->pb.nq; i++) v[i] = span > 0 ? v[i] / span : HUGE_VAL;
-    *worst = worst_rate(sim, noise, size, v, states);
+    share_sizes(sim, size);
+    raise_sizes(sim, motion, noise, size, states, size + n);
+    *worst = worst_rate(sim, noise, size, states);
   }
   free(noise);
   return LAG_OK;

@@ -102,7 +102,8 @@ typedef struct App {
   ErrorEstimate error; /* of the run, */
   int watched;      /* where it is estimated */
   double asked;     /* --accuracy; 0: none */
-  double second_most; /* most work of the second run [operations] */
+  double second_most; /* most work of the second run [operations], */
+  double second_few;  /* and where it makes few steps */
   int progress;     /* progress line: 1 shown, 0 not yet, -1 never (no terminal, or --quiet) */
   PhaseVolume volume; /* --volume */
   int volume_rc;    /* failure of its last step */

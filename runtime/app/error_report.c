@@ -30,23 +30,32 @@ int lag_app_copy_method(const lag_sim *from, lag_sim *to, double times) {
   return rc ? rc : lag_sim_set_tolerance(to, fmax(times * from->tol, least_tolerance));
 }
 
-/* Work of a run so far, in operations: a nanosecond or so each. Constraints add the factors of a matrix at each
- * call, events their functions, a Taylor series the square of its order. Contacts that are open are no constraints.
- * */
+/* Operations of an evaluation, of a series of this order. Constraints add the factors of a matrix. Contacts that are
+ * open are no constraints. */
+static double work_of_call(const lag_sim *run, double order) {
+  const lag_model *m = run->scene->model;
+  double size = m->constraints ? m->nq + m->constraints->n - m->ncontacts : 0;
+  return m->ops * (1 + order * order / 8) + 5 * run->pb.n + size * size * size / 3;
+}
+
+/* Work of a run so far, in operations: a nanosecond or so each. Events add their functions at each step, a Taylor
+ * series the square of its order at each call. */
 double lag_app_work(const lag_sim *run) {
   const double each_event = 1000;
   const lag_model *m = run->scene->model;
-  double size = m->constraints ? m->nq + m->constraints->n - m->ncontacts : 0;
   int series = m->taylor && run->method == &lag_taylor_method && run->method_work;
-  double order = series ? lag_taylor_order(run->method_work) : 0;
-  double call = m->ops * (1 + order * order / 8) + 5 * run->pb.n + size * size * size / 3;
+  double call = work_of_call(run, series ? lag_taylor_order(run->method_work) : 0);
   return run->pb.rhs_calls * call + run->run->steps * (each_event * m->nev + 20 * run->pb.n);
 }
 
+/* Fewer steps of the second run show no law of growth; evaluations of as many steps of dop853. */
+enum { FEWEST = 24, FEWEST_CALLS = 12 * FEWEST };
+
 /* Ends the second run after its share of work, or on Ctrl-C. */
 static int enough(void *app, const lag_sim *other) {
-  const int fewest = 24; /* fewer show no law of growth */
-  int done = other->run->steps >= fewest && lag_app_work(other) >= ((App *)app)->second_most;
+  const App *a = app;
+  double work = lag_app_work(other);
+  int done = work >= a->second_most && (other->run->steps >= FEWEST || work >= a->second_few);
   return done || lag_app_interrupted() != EXIT_SIGNAL;
 }
 
@@ -120,6 +129,7 @@ typedef struct Second {
   double nudged;  /* roundings of the start; 0: none */
   double longest; /* step [s]; 0: any */
   double part;    /* of the run's equal steps, by its method; 0: another method or tolerance */
+  int halves;     /* 1: part is a half, and what it differs by is a part of the error */
   double steps, work;
 } Second;
 
@@ -127,12 +137,28 @@ typedef struct Second {
  * finds them later. */
 static const double late = DBL_EPSILON;
 
+/* Half the step where even the fewest steps of dop853 are beyond its share, as of many bodies. */
+static void choose_halves(const lag_sim *run, double most, Second *second) {
+  second->halves = lag_equal_step(run) > 0 && FEWEST_CALLS * work_of_call(run, 0) > most;
+  if (second->halves) second->part = 0.5;
+}
+
+/* Half the step leaves a part 2^-order of the error. */
+static double unseen(const lag_sim *run) {
+  const lag_method *m = run->method;
+  return 1 / (1 - pow(0.5, m->order_of ? m->order_of(run->options) : m->order));
+}
+
 static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double most, Second *second) {
+  const double few = 3; /* times the run's work, where its steps are fewer than FEWEST */
   lag_sim *other = lag_app_fresh_bare_sim(app);
   int rc = !other             ? LAG_ENOMEM
            : second->part > 0 ? set_shorter_steps(run, other, second->part)
                               : set_more_accurate(e, run, other);
   app->second_most = is_long_series(run) ? 3 * most : most; /* with as many more steps */
+  if (second->halves) app->second_most = fmax(most, FEWEST_CALLS * work_of_call(run, 0));
+  app->second_few = few * lag_app_work(run);
+  e->whole = second->halves ? unseen(run) : 1;
   if (rc == LAG_OK && second->longest > 0) rc = lag_app_set_option(other, "max_step", second->longest);
   if (rc == LAG_OK) {
     if (second->nudged > 0) nudge(other, second->nudged);
@@ -209,6 +235,7 @@ static void compare_rounding(App *app, ErrorEstimate *e, const lag_sim *run) {
 static int compare_methods(App *app, ErrorEstimate *e, lag_sim *run, double most) {
   Second second = {0};
   lag_error_estimate_note_end(e, run);
+  choose_halves(run, most, &second);
   int rc = compare_once(app, e, run, most, &second);
   double step = rc ? 0 : forced_step(e, run, second.steps);
   if (step > 0) {
@@ -223,7 +250,7 @@ static int compare_methods(App *app, ErrorEstimate *e, lag_sim *run, double most
   int blind = lag_error_estimate_is_blind(e), exact = !blind && run->run->events > 0 && e->largest < tiny;
   if (!blind && !exact) return compare_again(app, e, run, most, &second);
   if (exact) lag_error_estimate_reset(e); /* states that only events change have the same roundings, too */
-  second = (Second){.nudged = 4}; /* the first sum may take one away */
+  second = (Second){.nudged = 4, .part = second.part, .halves = second.halves}; /* the first sum may take one away */
   return compare_once(app, e, run, most, &second);
 }
 

@@ -18,6 +18,8 @@
 #include "core/core.h"
 
 enum { TURNS = 24, LEAST_TURNS = 12, BACK = 4, FREE_CALLS = 12, CALLS_FIRST = 48 };
+/* Operations of a model whose first searches would cost more than a short run: some rate of many bodies is rough. */
+enum { LARGE = 1000000, CALLS_FIRST_LARGE = 3 };
 
 /* Updates the rates of change of components nq to n; returns the component whose rate is rough (see above) and
  * largest relative to its size; -1: none. slight: rates that are small beside their recent peak count, too. */
@@ -45,7 +47,9 @@ static int find_rough(lag_sim *s, double t, int slight) {
   return which;
 }
 
-void lag_reset_rate_history(lag_sim *s) { for (int i = 0; i < 3 * s->pb.n; i++) s->rate_history[i] = NAN; }
+void lag_reset_rate_history(lag_sim *s) {
+  for (int i = 0; i < 3 * s->pb.n; i++) s->rate_history[i] = NAN;
+}
 
 /* The derivative of component i at fraction x of the straight line from now to y at t; NaN: no
  * value. Leaves the state in ya; uses yb. Dense output would not do: its velocities are wild beside
@@ -85,10 +89,11 @@ static double find_pole(lag_sim *s, double t, int i) {
 
 int lag_crosses_force_pole(lag_sim *s, double t) {
   lag_problem *pb = &s->pb;
+  const int first = pb->model->ops < LARGE ? CALLS_FIRST : CALLS_FIRST_LARGE;
   double *spent = &s->run->pole_calls, steps = s->run->steps, calls = pb->rhs_calls;
   const int lines = s->steps_equal && !pb->model->constraints && !(s->method->flags & LAG_METHOD_KEPLER);
   int i = lines ? find_rough(s, t, *spent <= FREE_CALLS + steps / 16) : -1;
-  if (i < 0 || *spent > CALLS_FIRST + steps / 4) return LAG_OK;
+  if (i < 0 || *spent > first + steps / 4) return LAG_OK;
   double pole = find_pole(s, t, i);
   *spent += pb->rhs_calls - calls;
   if (isnan(pole)) return LAG_OK;

@@ -237,6 +237,62 @@ scene s { start x = -2.06941509246826171875, y = -0.4054705798625946044921875, z
 EOF
 run "$TMP/chance.lag" --method 'taylor(order=20)' --tol 7.19e-15
 check "two series that round alike" awk -v e="$(value error)" 'BEGIN { print e; exit !(e > 1.7e-13/3 && e < 5*1.7e-13) }'
+# ---- many bodies: the estimate costs about as much as the run, by half the step of its own method
+cat >"$TMP/ball.lag" <<'EOF'
+model ball
+const N = 300
+coord r[N]: vec3
+param m = 1/N > 0, soft = 0.1
+kinetic = sum(i in 1..N, m/2*dot(r[i]', r[i]'))
+potential = -sum(i in 1..N, sum(j in 1..i-1, m^2/sqrt(dot(r[i] - r[j], r[i] - r[j]) + soft^2)))
+scene s { start r[i in 1..N] = (cos(i), sin(1.7*i), sin(0.6*i)); span 1 }
+EOF
+rows() { "$LAGC" run "$TMP/ball.lag" "$@" --every 0.01 --quiet -o -; }
+# The truth: rows within steps, against dop853. An estimate of the first order in small steps: a factor of 2.
+rows --method dop853 --tol 1e-11 >"$TMP/best"
+while read -r method step; do
+  run "$TMP/ball.lag" --method "$method" --step "$step"
+  is "$method with 300 bodies: its error is known to the end" 1 "$(value error_known_to)"
+  rows --method "$method" --step "$step" >"$TMP/these"
+  true=$(paste -d , "$TMP/these" "$TMP/best" | awk -F, 'NR == 1 { n = NF/2; for (i = 2; i < n; i++) kind[i] = $i ~ /\047/; next }
+    { for (i = 2; i < n; i++) { k = kind[i]; x = $(i + n); d = $i - x; if (d < 0) d = -d; if (x < 0) x = -x
+      if (d > m[k]) m[k] = d; if (x > s[k]) s[k] = x } }
+    END { a = m[0]/s[0]; b = m[1]/s[1]; print (a > b ? a : b) }')
+  within "and right" 2 "$(value error)" "$true"
+done <<EOF
+verlet 0.1
+symplectic_euler 0.02
+rk4 0.05
+verlet4 0.05
+EOF
+
+# Forces of a tree jump by their errors, so that dop853 creeps from jump to jump. A program counts evaluations of
+# forces and energy: a constant number for sizes of terms, and both at each of twice as many steps as the run's.
+sed 's/soft^2)))/soft^2), by tree(0.5)))/; s/N = 300/N = 3000/' "$TMP/ball.lag" >"$TMP/tree.lag"
+{
+  echo 'static long calls;'
+  "$LAGC" emit "$TMP/tree.lag" | sed '/^static int \(accel\|energy\)(/,/{$/ s/{$/{ calls++;/'
+  cat <<'EOF'
+#include <stdio.h>
+int main(int argc, char **argv) {
+  static const lag_scene *const scenes[] = {&ball_s};
+  static const lag_program program = {"tree", "", "tree.lag", "", 1, scenes};
+  int rc = lag_app_main(argc, argv, &program, 0);
+  fprintf(stderr, "calls %ld\n", calls);
+  return rc;
+}
+EOF
+} >"$TMP/tree.c"
+"$CC" -O2 -w -I"$INC" "$TMP/tree.c" "$LIBLAG" -lm -lpthread -o "$TMP/tree" || exit 1
+calls() { "$TMP/tree" --method verlet --step 0.01 "$@" 2>&1 >"$TMP/report" | sed -n 's/^calls //p'; }
+alone=$(calls --until 0.1 --quiet)
+check "a run of 10 steps by a tree takes few evaluations besides its steps" test "$alone" -le 65
+check "and its estimate few, too" test "$(calls --until 0.1)" -le $((alone + 140))
+check "which gives an error" says 0 'error about' cat "$TMP/report"
+alone=$(calls --quiet)
+check "so with 100 steps" test "$(calls)" -le $((alone + 2*200 + 160))
+check "to their end" says 0 'error about' cat "$TMP/report"
+
 # Refusals
 check "refused: --accuracy 0" says 2 'a relative error between 0 and 1' "$LAGC" run "$dp" --accuracy 0
 check "refused: --accuracy -1e-3" says 2 'a relative error between 0 and 1' "$LAGC" run "$dp" --accuracy -1e-3
