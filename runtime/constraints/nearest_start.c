@@ -463,5 +463,10 @@ int lag_consistent_start(lag_sim *s) {
     }
   }
   lag_free_all(block, w.index);
-  return rc == LAG_ENOMEM ? lag_fail(s, rc, "out of memory") : rc;
+  if (rc != LAG_ENOMEM) return rc;
+  double megabytes = 3e-6 * sizeof(double) * w.nheld * w.nheld; /* make_room: full, kkt */
+  return lag_fail(s, rc,
+                  "out of memory: the start on the constraints takes %.0f MB for the %d coordinates that they contain; "
+                  "constraints of fewer coordinates take less",
+                  megabytes, w.nheld);
 }
