@@ -23,7 +23,8 @@ size_t lag_rank_scratch_size(const lag_model *m) {
   const lag_constraints *of = m->constraints;
   size_t nq = (size_t)m->nq, n = of ? (size_t)of->n : 0;
   if (!of) return 0;
-  return (size_t)(of->njacobian + of->nmass) + 2 * (nq + n) + 2 * most_elements(m) + integer_room(m) + (n * nq + nq + n);
+  return (size_t)(of->njacobian + of->nmass) + 2 * (nq + n) + 2 * most_elements(m) + integer_room(m) +
+         (n * nq + nq + n);
 }
 
 double *lag_independence_scratch(const lag_problem *pb) {

@@ -204,7 +204,8 @@ static void keep_factors(Lower *l, const Block *blocks, uint32_t n, Slot *x) {
   for (uint32_t k = 0; k < n; k++) {
     const Block *b = &blocks[k];
     if (is_empty(b)) continue; /* the solution of an empty block is 0 to all orders */
-    FactorBlock kept = {.n = b->n, .at = b->at, .M = b->list, .divisor = b->n == 2 ? b->divisor : solve_element(&b->list, 0)};
+    Slot divisor = b->n == 2 ? b->divisor : solve_element(&b->list, 0);
+    FactorBlock kept = {.n = b->n, .at = b->at, .M = b->list, .divisor = divisor};
     vec_push(l->p->arena, &f->blocks, kept);
   }
   l->x = x;
