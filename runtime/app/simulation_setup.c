@@ -311,9 +311,11 @@ static int new_simulation(App *app) {
   if (rc) return rc;
   app->sim = lag_sim_new(app->scene);
   if (!app->sim) {
+    const lag_model *m = app->scene->model;
     return lag_app_error(&app->args,
-                         "cannot simulate scene %s: out of memory, or built for another version or number type",
-                         app->scene->name);
+                         "cannot simulate scene %s: out of memory, or built for another version or number type; its "
+                         "linear systems and constraints take %.0f MB",
+                         app->scene->name, 1e-6 * sizeof(double) * ((double)m->nw + (double)lag_rank_scratch_size(m)));
   }
   return lag_app_read_until(app);
 }

@@ -78,9 +78,9 @@ static int finish(App *app) {
     lag_rows_close(&app->rows, 0);
     lag_rows_close(&app->log_rows, 0);
     errno = app->bad_errno;
-    return app->status == LAG_EIO
-               ? lag_app_io_error(app, app->bad_file)
-               : lag_app_error(a, "%s", app->status == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
+    const char *why = lag_sim_message(app->sim), *full = "out of memory"; /* of rows the simulation does not know */
+    if (app->status == LAG_ENOMEM && strncmp(why, full, strlen(full)) != 0) why = full;
+    return app->status == LAG_EIO ? lag_app_io_error(app, app->bad_file) : lag_app_error(a, "%s", why);
   }
   if (app->rows.open && lag_rows_close(&app->rows, 1)) bad = lag_app_io_error(app, a->out);
   else app->written = 1;

@@ -8,10 +8,23 @@
 #include "lag_kkt.h"
 #include "numeric/magnitudes.h"
 
+/* Elements of A and M at most, with the diagonal of M. */
+static size_t most_elements(const lag_model *m) {
+  return (size_t)m->constraints->njacobian + 2 * (size_t)m->constraints->nmass + (size_t)m->nq;
+}
+
+/* Doubles that hold the integers of list_elements. */
+static size_t integer_room(const lag_model *m) {
+  size_t nq = (size_t)m->nq, n = (size_t)m->constraints->n;
+  return (6 * most_elements(m) + n + 3 * nq + 2) * sizeof(int) / sizeof(double) + 1;
+}
+
 size_t lag_rank_scratch_size(const lag_model *m) {
   const lag_constraints *of = m->constraints;
   size_t nq = (size_t)m->nq, n = of ? (size_t)of->n : 0;
-  return of ? nq * nq + (size_t)(of->njacobian + of->nmass) + (nq + n) * (nq + 2) + (n * nq + nq + n) : 0;
+  if (!of) return 0;
+  return (size_t)(of->njacobian + of->nmass) + 2 * (nq + n) + 2 * most_elements(m) + integer_room(m) +
+         (n * nq + nq + n);
 }
 
 double *lag_independence_scratch(const lag_problem *pb) {
@@ -19,27 +32,78 @@ double *lag_independence_scratch(const lag_problem *pb) {
   return pb->ranks + lag_rank_scratch_size(pb->model) - (n * nq + nq + n);
 }
 
+/* to[count] := from[count] (NULL: 0, 1, ...), sorted by key[from[k]], equal ones in their order; begin[keys + 1]:
+ * where each key begins. */
+static void sort_by(int count, int keys, const int *key, const int *from, int *begin, int *to) {
+  memset(begin, 0, ((size_t)keys + 1) * sizeof *begin);
+  for (int k = 0; k < count; k++) begin[key[k]]++;
+  for (int k = 0; k < keys; k++) begin[k + 1] += begin[k];
+  for (int k = count - 1; k >= 0; k--) {
+    int e = from ? from[k] : k;
+    to[--begin[key[e]]] = e;
+  }
+}
+
+/* row[], col[], value[] := the elements of A, of M, whose lower triangle of->mass lists, and zeros where M's diagonal
+ * is not listed; returns their number. listed[nq] is scratch. */
+static int gather_elements(const lag_problem *pb, const double *A, const double *M, int *row, int *col, int *listed,
+                           double *value) {
+  const lag_constraints *of = pb->model->constraints;
+  int count = 0;
+  for (; count < of->njacobian; count++) {
+    row[count] = of->jacobian[count].row, col[count] = of->jacobian[count].col;
+    value[count] = A[count];
+  }
+  memset(listed, 0, (size_t)pb->nq * sizeof *listed);
+  for (int k = 0; k < of->nmass; k++) {
+    int i = of->mass[k].row, j = of->mass[k].col;
+    listed[i] |= i == j;
+    for (int turn = 0; turn < (i == j ? 1 : 2); turn++, count++) {
+      row[count] = of->n + (turn ? j : i), col[count] = turn ? i : j;
+      value[count] = M[k];
+    }
+  }
+  for (int i = 0; i < pb->nq; i++) {
+    if (listed[i]) continue;
+    row[count] = of->n + i, col[count] = i;
+    value[count++] = 0;
+  }
+  return count;
+}
+
+/* unit[nq] := scales of the coordinates, by lists of the elements of A and M. room: of lag_rank_scratch_size. */
+static void find_units(const lag_problem *pb, const double *A, const double *M, double *room, double *unit) {
+  int nq = pb->nq, n = pb->model->constraints->n, most = (int)most_elements(pb->model);
+  double *scale = room, *top = scale + n + nq, *size = top + n + nq, *value = size + most;
+  int *rows = (int *)(void *)(value + most), *cols = rows + most, *row = cols + most, *col = row + most,
+      *order = col + most, *at = order + most, *first = at + most, *down = first + n + nq + 1, *diag = down + nq + 1;
+  int count = gather_elements(pb, A, M, rows, cols, diag, value);
+  sort_by(count, nq, cols, NULL, down, at);
+  sort_by(count, n + nq, rows, at, first, order);
+  for (int k = 0; k < count; k++) {
+    row[k] = rows[order[k]], col[k] = cols[order[k]];
+    size[k] = lag_element_size(value[order[k]]);
+    if (row[k] == n + col[k]) diag[col[k]] = k;
+  }
+  sort_by(first[n], nq, col, NULL, down, at);
+  const lag_elements of = {nq, n, first, col, row, diag, down, at};
+  lag_scales(&of, scale, top, size);
+  memcpy(unit, scale + n, (size_t)nq * sizeof *unit);
+}
+
 int lag_constraint_jacobian(lag_problem *pb, double t, const double *y, double *A, double *unit, double *mass) {
   const lag_constraints *of = pb->model->constraints;
-  size_t n = (size_t)of->n, nq = (size_t)pb->nq;
-  double *M = pb->ranks, *entries = M + nq * nq, *masses = entries + of->njacobian, *scale = masses + of->nmass,
-         *top = scale + n + nq;
+  size_t nq = (size_t)pb->nq;
+  double *entries = pb->ranks, *masses = entries + of->njacobian;
   int rc = lag_inputs(pb, t);
-  memset(M, 0, nq * nq * sizeof *M);
   rc = rc ? rc : of->matrices(of, t, y, y + nq, y + 2 * nq, pb->p, pb->u, entries, masses, pb->work);
-  for (size_t i = 0; i < n * nq; i++) A[i] = 0;
-  for (int e = 0; e < of->njacobian && rc == 0; e++)
+  memset(A, 0, (size_t)of->n * nq * sizeof *A);
+  if (rc) return rc;
+  for (int e = 0; e < of->njacobian; e++)
     A[(size_t)of->jacobian[e].row * nq + (size_t)of->jacobian[e].col] = entries[e];
-  for (int e = 0; e < of->nmass && rc == 0; e++) {
-    size_t i = (size_t)of->mass[e].row, j = (size_t)of->mass[e].col;
-    M[i * nq + j] = M[j * nq + i] = masses[e];
-  }
-  if (rc == 0) {
-    lag_scales(pb->nq, of->n, M, A, scale, top, top + n + nq);
-    memcpy(unit, scale + n, nq * sizeof *unit);
-    if (mass) memcpy(mass, M, nq * nq * sizeof *M);
-  }
-  return rc;
+  find_units(pb, entries, masses, masses + of->nmass, unit);
+  if (mass) lag_symmetric_matrix(nq, of->nmass, of->mass, masses, mass);
+  return 0;
 }
 
 /* Indices of the components of x that are not 0, in order; -1: more than MOST_SPARSE. */

@@ -18,14 +18,16 @@ typedef struct Start {
   lag_sim *sim;
   lag_problem *pb;
   const lag_constraints *of;
-  int nq;
+  int nq, nheld;             /* coordinates; those that a constraint contains, which alone may move */
   lag_level level;           /* positions or velocities, at hand */
   double *y, *asked, *best;  /* [pb->n] */
   double *other;             /* [constraints] residual of the level not at hand; marks of rank */
   double *M;                 /* sparse entries */
-  double *full, *kkt;        /* [nq nq], work of lag_kkt */
+  double *full, *kkt;        /* [nheld nheld] M of the held coordinates; work of lag_kkt */
   int *place;                /* [nq] index of a coordinate among the free ones; -1: it is none */
-  int *index;                /* block of the level's integers, and of place */
+  int *number;               /* [nq] index of a coordinate among the held ones; -1: it is none */
+  int *held;                 /* [nheld] those coordinates, rising */
+  int *index;                /* block of all integers */
 } Start;
 
 /* ---- the model at the state of a level */
@@ -70,27 +72,24 @@ static void scales(const lag_level *w, const double *x, double *reach) {
 static int direction(const lag_level *w, double pull, double *d) {
   Start *s = w->context;
   const lag_constraints *of = s->of;
-  int nq = s->nq, nf = w->nfree, rc = jacobian(w, w->A);
+  int nq = s->nq, nf = w->nfree, nh = s->nheld, rc = jacobian(w, w->A);
   double *A = s->kkt + nf * nf, *x = A + w->rows * nf, *l = x + nf;
-  int *place = s->place;
+  int *place = s->place, *number = s->number;
   for (int i = 0; i < nq; i++) place[i] = -1;
   for (int regular = 0, pass = 0; pass < 2 && rc == 0 && !regular; pass++) {
-    memset(s->full, 0, (size_t)(nq * nq) * sizeof(double));
-    for (int e = 0; e < of->nmass; e++) {
-      int i = of->mass[e].row, j = of->mass[e].col;
-      s->full[i * nq + j] = s->full[j * nq + i] = s->M[e];
+    memset(s->full, 0, (size_t)nh * (size_t)nh * sizeof(double));
+    for (int e = 0; e < of->nmass && pass == 0; e++) {
+      int i = number[of->mass[e].row], j = number[of->mass[e].col];
+      if (i >= 0 && j >= 0) s->full[i * nh + j] = s->full[j * nh + i] = s->M[e];
     }
-    for (int i = 0; i < nq && pass == 1; i++) { /* M is singular: the identity takes its place */
-      memset(s->full + i * nq, 0, (size_t)nq * sizeof(double));
-      s->full[i * nq + i] = 1;
-    }
+    for (int i = 0; i < nh && pass == 1; i++) s->full[i * nh + i] = 1; /* M is singular: the identity takes its place */
     memset(A, 0, (size_t)(w->rows * nf) * sizeof(double));
     for (int a = 0; a < nf; a++) {
-      const double *row = s->full + w->free[a] * nq;
+      const double *row = s->full + number[w->free[a]] * nh;
       x[a] = 0;
       place[w->free[a]] = a;
       for (int b = 0; b < nf; b++) {
-        double m = row[w->free[b]];
+        double m = row[number[w->free[b]]];
         if (m != 0.0) m *= lag_level_weight(w, w->free[a]) * lag_level_weight(w, w->free[b]);
         s->kkt[a * nf + b] = m;
         if (m != 0.0) x[a] += pull * m * (w->asked[w->free[b]] - w->x[w->free[b]]);
@@ -112,11 +111,12 @@ static int direction(const lag_level *w, double pull, double *d) {
 static double distance(const lag_level *w) {
   const Start *s = w->context;
   double sum = 0;
-  for (int i = 0; i < w->n; i++)
-    for (int j = 0; j < w->n; j++)
-      if (s->full[i * w->n + j] != 0.0)
-        sum += lag_level_weight(w, i) * (w->x[i] - w->asked[i]) * s->full[i * w->n + j] * lag_level_weight(w, j) *
-               (w->x[j] - w->asked[j]);
+  for (int e = 0; e < s->nheld * s->nheld; e++) {
+    int i = s->held[e / s->nheld], j = s->held[e % s->nheld];
+    if (s->full[e] != 0.0)
+      sum += lag_level_weight(w, i) * (w->x[i] - w->asked[i]) * s->full[e] * lag_level_weight(w, j) *
+             (w->x[j] - w->asked[j]);
+  }
   return sum;
 }
 
@@ -341,19 +341,24 @@ static void keep_rounding_out(const Start *w) {
   }
 }
 
+/* Lists the coordinates that a constraint contains. */
+static void list_held(Start *s) {
+  for (int i = 0; i < s->nq; i++) s->number[i] = -1;
+  for (int e = 0; e < s->of->njacobian; e++) s->number[s->of->jacobian[e].col] = 0;
+  for (int i = 0; i < s->nq; i++) {
+    if (s->number[i] < 0) continue;
+    s->held[s->nheld] = i;
+    s->number[i] = s->nheld++;
+  }
+}
+
 /* Allocates the work space, one block of doubles and one of integers. 0: no memory. */
 static int make_room(Start *s, double **block) {
   lag_level *w = &s->level;
   size_t n = (size_t)s->pb->n, nq = (size_t)s->nq, m = (size_t)s->of->n, entries = (size_t)s->of->njacobian;
-  const lag_part parts[] = {{&s->y, n}, {&s->asked, n}, {&s->best, n}, {&s->other, m}, {&s->M, (size_t)s->of->nmass},
-      {&s->full, nq * nq}, {&s->kkt, 2 * (nq * nq + m * nq) + 3 * nq + m + m * m + 9 * m}, {&w->x, nq},
-      {&w->asked, nq}, {&w->best, nq}, {&w->from, nq}, {&w->d, nq}, {&w->along, nq}, {&w->reach, nq},
-      {&w->nearest, nq}, {&w->other, nq}, {&w->residual, m}, {&w->size, m}, {&w->terms_here, m}, {&w->slope, m},
-      {&w->has_terms, m},
-      {&w->A, entries}};
-  *block = lag_workspace(sizeof parts / sizeof *parts, parts);
-  s->index = malloc((2 * nq + 2 * entries + 1) * sizeof *s->index);
-  if (!*block || !s->index) return 0;
+  *block = NULL;
+  s->index = malloc((4 * nq + 2 * entries + 1) * sizeof *s->index);
+  if (!s->index) return 0;
   int *row = s->index + nq, *col = row + entries;
   for (size_t e = 0; e < entries; e++) {
     row[e] = s->of->jacobian[e].row;
@@ -363,7 +368,18 @@ static int make_room(Start *s, double **block) {
   w->row = row;
   w->col = col;
   s->place = col + entries;
-  return 1;
+  s->number = s->place + nq;
+  s->held = s->number + nq;
+  list_held(s);
+  size_t nh = (size_t)s->nheld, step = 2 * (nh * nh + m * nh) + 3 * nh + m + m * m + 9 * m, rows = m * nq + nq + 2 * m;
+  const lag_part parts[] = {{&s->y, n}, {&s->asked, n}, {&s->best, n}, {&s->other, m}, {&s->M, (size_t)s->of->nmass},
+      {&s->full, nh * nh > nq ? nh * nh : nq}, {&s->kkt, step > rows ? step : rows}, {&w->x, nq},
+      {&w->asked, nq}, {&w->best, nq}, {&w->from, nq}, {&w->d, nq}, {&w->along, nq}, {&w->reach, nq},
+      {&w->nearest, nq}, {&w->other, nq}, {&w->residual, m}, {&w->size, m}, {&w->terms_here, m}, {&w->slope, m},
+      {&w->has_terms, m},
+      {&w->A, entries}};
+  *block = lag_workspace(sizeof parts / sizeof *parts, parts);
+  return *block != NULL;
 }
 
 static int begin_start(Start *w, double **block) {
@@ -447,5 +463,10 @@ int lag_consistent_start(lag_sim *s) {
     }
   }
   lag_free_all(block, w.index);
-  return rc == LAG_ENOMEM ? lag_fail(s, rc, "out of memory") : rc;
+  if (rc != LAG_ENOMEM) return rc;
+  double megabytes = 3e-6 * sizeof(double) * w.nheld * w.nheld; /* make_room: full, kkt */
+  return lag_fail(s, rc,
+                  "out of memory: the start on the constraints takes %.0f MB for the %d coordinates that they contain; "
+                  "constraints of fewer coordinates take less",
+                  megabytes, w.nheld);
 }

@@ -62,40 +62,60 @@ static LAG_LANE lag_reflector(int n, LAG_LANE *v, LAG_LANE *beta) {
   return alpha;
 }
 
-/* Leaves elements out of size[(m + n) n] that the scales found so far make far smaller than the others: they pass
- * zero, as the sine of an angle does, and would turn the scales of all. */
-static void lag_leave_small(int n, int m, const LAG_LANE *scale, LAG_LANE *size) {
-  const LAG_LANE none = (LAG_LANE)1e9, far = (LAG_LANE)-12;
-  for (int k = 0; k < m + n; k++)
-    for (int j = 0; j < n; j++)
-      if (size[k*n + j] + scale[k] + scale[m + j] < far) size[k*n + j] = none;
+/* Elements of the rows of A and then of M, row-major, for lag_scales: row k has those from first[k] on, in the columns
+ * col; diag: elements of M's diagonal; column j of A has elements at[down[j]] and on. first == 0: all are there. */
+typedef struct lag_elements {
+  int n, m;
+  const int *first, *col, *row, *diag, *down, *at;
+} lag_elements;
+
+static int lag_row_from(const lag_elements *of, int k) { return of->first ? of->first[k] : k*of->n; }
+static int lag_row_of(const lag_elements *of, int e) { return of->first ? of->row[e] : e/of->n; }
+static int lag_column(const lag_elements *of, int k, int e) { return of->first ? of->col[e] : e - k*of->n; }
+static int lag_diagonal(const lag_elements *of, int j) { return of->first ? of->diag[j] : (of->m + j)*of->n + j; }
+static int lag_down_from(const lag_elements *of, int j) { return of->first ? of->down[j] : j*of->m; }
+static int lag_down_at(const lag_elements *of, int j, int d) { return of->first ? of->at[d] : (d - j*of->m)*of->n + j; }
+
+/* Exponent of the element x, 1e9 for a zero. */
+static LAG_LANE lag_element_size(LAG_LANE x) {
+  int e;
+  (void)LAG_LANE_FN(frexp)(x, &e);
+  return (x < 0 || x > 0) && x - x == 0 ? (LAG_LANE)e - (LAG_LANE)0.5 : (LAG_LANE)1e9;
 }
 
-/* size[(m + n) n] := exponents of the elements of A and then of M, 1e9 for zeros; top[m + n] := the largest of each
- * row of A and of each column of [M; A], -1e9 where all are zeros. */
-static void lag_element_sizes(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *top, LAG_LANE *size) {
+/* Leaves elements out of size that the scales found so far make far smaller than the others: they pass zero, as the
+ * sine of an angle does, and would turn the scales of all. */
+static void lag_leave_small(const lag_elements *of, const LAG_LANE *scale, LAG_LANE *size) {
+  const LAG_LANE none = (LAG_LANE)1e9, far = (LAG_LANE)-12;
+  for (int k = 0; k < of->m + of->n; k++)
+    for (int e = lag_row_from(of, k); e < lag_row_from(of, k + 1); e++)
+      if (size[e] + scale[k] + scale[of->m + lag_column(of, k, e)] < far) size[e] = none;
+}
+
+/* top[m + n] := the largest of each row of A and of each column of [M; A], -1e9 where all are zeros. */
+static void lag_largest_sizes(const lag_elements *of, const LAG_LANE *size, LAG_LANE *top) {
   const LAG_LANE none = (LAG_LANE)1e9;
-  int e;
-  for (int k = 0; k < m + n; k++) top[k] = -none;
-  for (int k = 0; k < m + n; k++)
-    for (int j = 0; j < n; j++) {
-      const LAG_LANE x = k < m ? A[k*n + j] : M[(k - m)*n + j];
-      (void)LAG_LANE_FN(frexp)(x, &e);
-      const LAG_LANE here = size[k*n + j] = (x < 0 || x > 0) && x - x == 0 ? (LAG_LANE)e - (LAG_LANE)0.5 : none;
-      if (here < none && here > top[k]) top[k] = here;
-      if (here < none && here > top[m + j]) top[m + j] = here;
+  for (int k = 0; k < of->m + of->n; k++) top[k] = -none;
+  for (int k = 0; k < of->m + of->n; k++)
+    for (int e = lag_row_from(of, k); e < lag_row_from(of, k + 1); e++) {
+      LAG_LANE *const column = top + of->m + lag_column(of, k, e);
+      if (size[e] < none && size[e] > top[k]) top[k] = size[e];
+      if (size[e] < none && size[e] > *column) *column = size[e];
     }
 }
 
 /* Range of the sizes of rows and columns of A. */
-static LAG_LANE lag_constraint_range(int n, int m, const LAG_LANE *top, const LAG_LANE *size) {
+static LAG_LANE lag_constraint_range(const lag_elements *of, const LAG_LANE *top, const LAG_LANE *size) {
   const LAG_LANE none = (LAG_LANE)1e9;
   LAG_LANE least = none, most = -none;
-  for (int k = 0; k < m; k++)
+  for (int k = 0; k < of->m; k++)
     least = top[k] > -none && top[k] < least ? top[k] : least, most = top[k] > most ? top[k] : most;
-  for (int j = 0; j < n; j++) {
+  for (int j = 0; j < of->n; j++) {
     LAG_LANE column = -none;
-    for (int k = 0; k < m; k++) column = size[k*n + j] < none && size[k*n + j] > column ? size[k*n + j] : column;
+    for (int d = lag_down_from(of, j); d < lag_down_from(of, j + 1); d++) {
+      const LAG_LANE here = size[lag_down_at(of, j, d)];
+      column = here < none && here > column ? here : column;
+    }
     least = column > -none && column < least ? column : least;
   }
   return most - least;
@@ -103,16 +123,17 @@ static LAG_LANE lag_constraint_range(int n, int m, const LAG_LANE *top, const LA
 
 /* Range of inertia, which goes with the square of a coordinate's unit; far where a coordinate without inertia stands
  * beside elements that another unit of it would make lose half of their digits (bits: exponent of the rounding). */
-static LAG_LANE lag_inertia_range(int n, int m, int bits, const LAG_LANE *size) {
+static LAG_LANE lag_inertia_range(const lag_elements *of, int bits, const LAG_LANE *size) {
   const LAG_LANE none = (LAG_LANE)1e9;
   LAG_LANE light = none, heavy = -none;
-  for (int j = 0; j < n; j++) {
-    const LAG_LANE here = size[(m + j)*n + j];
+  for (int j = 0; j < of->n; j++) {
+    const LAG_LANE here = size[lag_diagonal(of, j)];
     LAG_LANE beside = -none;
     light = here < light ? here : light, heavy = here < none && here > heavy ? here : heavy;
-    for (int k = 0; k < m*n && !(here < none); k++) {
-      const LAG_LANE own = size[k/n*n + j], by = size[k] - own;
-      if (k%n != j && own < none && size[k] < none && by > beside) beside = by;
+    for (int d = lag_down_from(of, j); d < lag_down_from(of, j + 1) && !(here < none); d++) {
+      const int own = lag_down_at(of, j, d), k = lag_row_of(of, own);
+      for (int e = lag_row_from(of, k); e < lag_row_from(of, k + 1) && size[own] < none; e++)
+        if (e != own && size[e] < none && size[e] - size[own] > beside) beside = size[e] - size[own];
     }
     if (beside < (LAG_LANE)(bits/2) && beside > (LAG_LANE)bits) light = -none;
   }
@@ -120,19 +141,22 @@ static LAG_LANE lag_inertia_range(int n, int m, int bits, const LAG_LANE *size) 
 }
 
 /* Moves each scale to the best for the scales of the others; the largest move. */
-static LAG_LANE lag_improve_scales(int n, int m, const LAG_LANE *size, LAG_LANE *scale) {
+static LAG_LANE lag_improve_scales(const lag_elements *of, const LAG_LANE *size, LAG_LANE *scale) {
   const LAG_LANE none = (LAG_LANE)1e9;
+  const int m = of->m;
   LAG_LANE moved = 0;
-  for (int k = 0; k < m + n; k++) {
+  for (int k = 0; k < m + of->n; k++) {
     LAG_LANE sum = 0, weight = 0;
-    for (int j = 0; j < n; j++) {
+    for (int e = lag_row_from(of, k); e < lag_row_from(of, k + 1); e++) {
       /* diagonal: the scale enters twice */
-      const LAG_LANE here = size[k*n + j], twice = (LAG_LANE)(j == k - m ? 2 : 1);
-      const LAG_LANE counts = (LAG_LANE)(j == k - m ? 16 : 1);
+      const int j = lag_column(of, k, e);
+      const LAG_LANE here = size[e], twice = (LAG_LANE)(j == k - m ? 2 : 1), counts = (LAG_LANE)(j == k - m ? 16 : 1);
       if (here < none) sum += counts*twice*(here + (j == k - m ? 0 : scale[m + j])), weight += counts*twice*twice;
     }
-    for (int j = 0; j < m && k >= m; j++)
-      if (size[j*n + k - m] < none) sum += size[j*n + k - m] + scale[j], weight += 1;
+    for (int d = k < m ? 0 : lag_down_from(of, k - m); k >= m && d < lag_down_from(of, k - m + 1); d++) {
+      const int e = lag_down_at(of, k - m, d);
+      if (size[e] < none) sum += size[e] + scale[lag_row_of(of, e)], weight += 1;
+    }
     const LAG_LANE now = weight > 0 ? -sum/weight : 0, change = LAG_LANE_FN(fabs)(now - scale[k]);
     moved = change > moved ? change : moved;
     scale[k] = now;
@@ -145,24 +169,23 @@ static LAG_LANE lag_improve_scales(int n, int m, const LAG_LANE *size, LAG_LANE 
  * (1972) 118, DOI 10.1093/imamat/10.1.118). So ranks depend on no unit: another unit of a constraint or coordinate
  * changes its scale and nothing else. Elements that are rounding beside the largest of their row and column do not
  * count; inertia counts 16 times, so that a constraint that becomes dependent is seen to, and not scaled up. Where
- * ranges are small nothing is scaled, so nothing changes from call to call. top[m + n] and size[(m + n) n] are
- * scratch. */
-static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *scale, LAG_LANE *top,
-                       LAG_LANE *size) {
-  const int all = m + n;
+ * ranges are small nothing is scaled, so nothing changes from call to call. size: lag_element_size of each element,
+ * and top[m + n], are destroyed. */
+static void lag_scales(const lag_elements *of, LAG_LANE *scale, LAG_LANE *top, LAG_LANE *size) {
+  const int all = of->m + of->n;
   LAG_LANE moved = 1;
   int bits;
   (void)LAG_LANE_FN(frexp)(lag_rounding(), &bits);
-  lag_element_sizes(n, m, M, A, top, size);
-  const int even = lag_constraint_range(n, m, top, size) <= 12 && lag_inertia_range(n, m, bits, size) <= 48;
+  lag_largest_sizes(of, size, top);
+  const int even = lag_constraint_range(of, top, size) <= 12 && lag_inertia_range(of, bits, size) <= 48;
   for (int k = 0; k < all; k++) scale[k] = even ? 1 : 0;
   if (even) return;
   for (int k = 0; k < all; k++)
-    for (int j = 0; j < n; j++)
-      if (2*size[k*n + j] < top[k] + top[m + j] + (LAG_LANE)(2*bits + 6)) size[k*n + j] = (LAG_LANE)1e9;
+    for (int e = lag_row_from(of, k); e < lag_row_from(of, k + 1); e++)
+      if (2*size[e] < top[k] + top[of->m + lag_column(of, k, e)] + (LAG_LANE)(2*bits + 6)) size[e] = (LAG_LANE)1e9;
   for (int turn = 0, left = 0; turn < 40 && (moved > (LAG_LANE)0.1 || !left); turn++) {
-    if (!(moved > (LAG_LANE)0.1)) lag_leave_small(n, m, scale, size), left = 1;
-    moved = lag_improve_scales(n, m, size, scale);
+    if (!(moved > (LAG_LANE)0.1)) lag_leave_small(of, scale, size), left = 1;
+    moved = lag_improve_scales(of, size, scale);
   }
   for (int k = 0; k < all; k++)
     scale[k] = LAG_LANE_FN(ldexp)((LAG_LANE)1, (int)LAG_LANE_FN(floor)(scale[k] + (LAG_LANE)0.5));
@@ -414,7 +437,9 @@ static int lag_kkt_rows(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_
   LAG_LANE *const diag = w, *const beta = w + m, *const scale = w + 2*m, *const order = w + 3*m;
   LAG_LANE *const y = w + 4 * m, *const s = w + 5 * m, *const mu = w + 6 * m, *const S = w + 7 * m,
                   *const z = S + m * m + m, *const unit = z + n + m;
-  lag_scales(n, m, M, A, unit - m, z - m, unit + n);
+  const lag_elements all = {n, m, 0, 0, 0, 0, 0, 0};
+  for (int e = 0; e < (m + n)*n; e++) unit[n + e] = lag_element_size(e < m*n ? A[e] : M[e - m*n]);
+  lag_scales(&all, unit - m, z - m, unit + n);
   const LAG_LANE most = lag_scale_columns(n, m, unit, M, A, x);
   (void)lag_any_side(n, z);
   const int r = lag_rank(n, m, coarse, A, diag, beta, scale, order);

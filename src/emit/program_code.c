@@ -418,7 +418,7 @@ static void write_stores(Coder *w) {
 static void each_hidden_use(const Coder *w, const uint32_t *at, uint32_t position, uint32_t *last) {
   if (at[0] == CODE_SOLVE) {
     const Solve *k = &w->p->solves.at[at[1]];
-    for (uint32_t j = 0; j < k->nfilled; j++) last[k->matrix[k->filled[j]]] = position;
+    for (uint32_t j = 0; j < k->list.n; j++) last[k->list.at[j].x] = position;
     for (uint32_t j = 0; j < solve_unknowns(k); j++) last[k->rhs[j]] = position;
   }
   if (at[0] == CODE_NEST) {
@@ -538,9 +538,9 @@ static void put_nest(Coder *w, StrBuf *out, const Nest *n) {
 static void put_solve(const Coder *w, StrBuf *out, const Solve *k) {
   uint32_t b = solve_elements(k), n = 0;
   for (uint32_t j = 0; j < solve_unknowns(k); j++) n += k->rhs[j] != 0;
-  put_word(out, k->n), put_word(out, k->m), put_word(out, (uint32_t)k->coarse), put_word(out, k->nfilled + n);
-  for (uint32_t j = 0; j < k->nfilled; j++)
-    put_word(out, k->filled[j]), put_word(out, w->place[k->matrix[k->filled[j]]]);
+  put_word(out, k->n), put_word(out, k->m), put_word(out, (uint32_t)k->coarse), put_word(out, k->list.n + n);
+  for (uint32_t j = 0; j < k->list.n; j++)
+    put_word(out, k->list.at[j].at), put_word(out, w->place[k->list.at[j].x]);
   for (uint32_t j = 0; j < solve_unknowns(k); j++)
     if (k->rhs[j]) put_word(out, b + j), put_word(out, w->place[k->rhs[j]]);
 }

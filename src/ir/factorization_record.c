@@ -46,7 +46,7 @@ void factor_record_backward(Prog *p, const FactorRecord *f, uint32_t v, const Sl
 static void solve_pair(Prog *p, const FactorRecord *f, uint32_t k, const Slot *b, Slot *x) {
   const FactorBlock *m = &f->blocks.at[k];
   const uint32_t i = m->at[0], j = m->at[1];
-  const Slot m11 = m->M[0], m12 = m->M[2], m22 = m->M[3];
+  const Slot m11 = solve_element(&m->M, 0), m12 = solve_element(&m->M, 2), m22 = solve_element(&m->M, 3);
   Slot top1 = op(p, IR_MUL, b[i], m22), top2 = op(p, IR_MUL, m11, b[j]);
   Slot n1 = prog_sub_product(p, top1, m12, b[j]), n2 = prog_sub_product(p, top2, m12, b[i]);
   x[i] = divided(p, f, k, n1, m->divisor);
@@ -55,12 +55,9 @@ static void solve_pair(Prog *p, const FactorRecord *f, uint32_t k, const Slot *b
 
 static void solve_loop(Prog *p, const FactorBlock *m, const Slot *b, Slot *x) {
   uint32_t n = m->n;
-  Slot *full = ARENA_ARRAY(p->arena, Slot, n * n), *rhs = ARENA_ARRAY(p->arena, Slot, n),
-       *y = ARENA_ARRAY(p->arena, Slot, n);
-  for (uint32_t i = 0; i < n; i++)
-    for (uint32_t j = 0; j < n; j++) full[i * n + j] = m->M[i >= j ? i * n + j : j * n + i];
+  Slot *rhs = ARENA_ARRAY(p->arena, Slot, n), *y = ARENA_ARRAY(p->arena, Slot, n);
   for (uint32_t i = 0; i < n; i++) rhs[i] = b[m->at[i]];
-  prog_solve(p, (Solve){.n = n, .matrix = full, .rhs = rhs}, y);
+  prog_solve(p, (Solve){.n = n, .rhs = rhs, .list = m->M}, y);
   for (uint32_t i = 0; i < n; i++) x[m->at[i]] = y[i];
 }
 

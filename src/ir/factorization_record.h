@@ -9,7 +9,7 @@
 typedef struct {
   uint32_t n;
   const uint32_t *at; /* [n] the coordinates */
-  const Slot *M;      /* [n*n] row-major, lower triangle filled */
+  SolveElements M;    /* lower triangle */
   Slot divisor;
 } FactorBlock;
 

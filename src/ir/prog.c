@@ -2,6 +2,7 @@
  * --dump=prog. */
 #include "ir/prog.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 Prog *prog_new(Arena *a) {
@@ -151,11 +152,32 @@ void prog_copy_stores(Prog *to, const Prog *from, const Slot *map) {
   }
 }
 
+Slot solve_element(const SolveElements *list, uint32_t at) {
+  for (uint32_t k = 0; k < list->n; k++)
+    if (list->at[k].at == at) return list->at[k].x;
+  return 0;
+}
+
+static int by_place(const void *a, const void *b) {
+  uint32_t x = ((const SolveElement *)a)->at, y = ((const SolveElement *)b)->at;
+  return (x > y) - (x < y);
+}
+
+void solve_sort(SolveElements *list) {
+  if (list->n) qsort(list->at, list->n, sizeof *list->at, by_place);
+}
+
 void prog_solve(Prog *p, Solve k, Slot *x) {
-  uint32_t *filled = ARENA_ARRAY(p->arena, uint32_t, solve_elements(&k) + 1);
-  for (uint32_t j = 0; j < solve_elements(&k); j++)
-    if (k.matrix[j]) filled[k.nfilled++] = j;
-  k.filled = filled;
+  SolveElements list = {0};
+  for (uint32_t e = 0; e < k.list.n; e++) {
+    SolveElement s = k.list.at[e];
+    uint32_t i = s.at / k.n, j = s.at % k.n;
+    if (!s.x) continue;
+    vec_push(p->arena, &list, s);
+    if (i < k.n && i != j) vec_push(p->arena, &list, ((SolveElement){j * k.n + i, s.x}));
+  }
+  solve_sort(&list);
+  k.list = list;
   vec_push(p->arena, &p->solves, k);
   Slot s = prog_ins(p, (Ins){.op = IR_SOLVE, .index = p->solves.n - 1});
   for (uint32_t i = 0; i < k.n + k.m; i++) x[i] = prog_ins(p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
@@ -191,14 +213,14 @@ int ir_is_leaf(IrOp op) { return op == IR_CONST || op == IR_PI || op == IR_LOAD;
 
 uint32_t prog_operands(const Prog *p, const Ins *i) {
   const Solve *k = i->op == IR_SOLVE ? &p->solves.at[i->index] : NULL;
-  return 3 + (i->op == IR_NEST ? p->nests.at[i->index].nouter : k ? solve_elements(k) + solve_unknowns(k) : 0);
+  return 3 + (i->op == IR_NEST ? p->nests.at[i->index].nouter : k ? k->list.n + solve_unknowns(k) : 0);
 }
 
 Slot prog_operand(const Prog *p, const Ins *i, uint32_t k) {
   if (k < 3) return ins_operand(i, (int)k);
   if (i->op == IR_NEST) return p->nests.at[i->index].outer[k - 3];
   const Solve *s = &p->solves.at[i->index];
-  return k - 3 < solve_elements(s) ? s->matrix[k - 3] : s->rhs[k - 3 - solve_elements(s)];
+  return k - 3 < s->list.n ? s->list.at[k - 3].x : s->rhs[k - 3 - s->list.n];
 }
 
 static void mark_needed(const Prog *p, unsigned char *need) {
@@ -233,7 +255,10 @@ Ins prog_import(Prog *to, const Prog *from, const Slot *map, Ins i) {
   }
   if (i.op != IR_SOLVE) return i;
   Solve k = from->solves.at[i.index];
-  k.matrix = moved(to->arena, map, k.matrix, solve_elements(&k));
+  SolveElements list = {0};
+  for (uint32_t e = 0; e < k.list.n; e++)
+    vec_push(to->arena, &list, ((SolveElement){k.list.at[e].at, map[k.list.at[e].x]}));
+  k.list = list;
   k.rhs = moved(to->arena, map, k.rhs, solve_unknowns(&k));
   i.index = to->solves.n;
   vec_push(to->arena, &to->solves, k);

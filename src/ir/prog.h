@@ -81,18 +81,30 @@ typedef struct {
   const char *comment;
 } Store;
 
-/* A system that a loop solves: matrix[n*n] row-major (0: zero), rhs[n]. m > 0 constraints: M x - A^T l = f, A x = g.
- * A[m*n] follows M, g follows f, l follows x. filled: indices of the nonzero elements of the matrix. coarse: nearly
- * dependent constraints count as dependent (lag_kkt.h). */
+/* An element that is not zero, at row n + column of [M; A], row-major. */
+typedef struct {
+  uint32_t at;
+  Slot x;
+} SolveElement;
+typedef VEC(SolveElement) SolveElements;
+
+/* Sorts by place. */
+void solve_sort(SolveElements *list);
+
+/* Element of the list; 0: none. */
+Slot solve_element(const SolveElements *list, uint32_t at);
+
+/* A system that a loop solves: symmetric M[n*n], rhs[n]. m > 0 constraints: M x - A^T l = f, A x = g. A[m*n] follows M,
+ * g follows f, l follows x. list: elements by rising place. coarse: nearly dependent constraints count as dependent
+ * (lag_kkt.h). */
 typedef struct {
   uint32_t n, m;
   int coarse;
-  const Slot *matrix, *rhs;
-  const uint32_t *filled; /* [nfilled] */
-  uint32_t nfilled;
+  const Slot *rhs;
+  SolveElements list;
 } Solve;
 
-/* Lengths of matrix and of rhs. */
+/* Size of [M; A], and length of rhs. */
 static inline uint32_t solve_elements(const Solve *k) { return (k->n + k->m) * k->n; }
 static inline uint32_t solve_unknowns(const Solve *k) { return k->n + k->m; }
 
@@ -205,7 +217,7 @@ void prog_store(Prog *p, uint32_t array, uint32_t index, Slot s, const char *com
 /* Appends the stores of `from`, their slots renumbered by map[slot]. */
 void prog_copy_stores(Prog *to, const Prog *from, const Slot *map);
 
-/* Appends the solve, with `filled` listed, and its solution x[n + m]. */
+/* Appends the solve, and its solution x[n + m]; k.list: lower triangle of M and A, in any order. */
 void prog_solve(Prog *p, Solve k, Slot *x);
 
 /* Gives a value the user's or the theory's name, unless it has a name or is a leaf. */

@@ -40,9 +40,9 @@ static const Real *solved(const Prog *p, const Solve *s, const Real *v, int *sta
   ArenaMark before = arena_mark(p->arena);
   SparseElements system = {0};
   for (uint32_t i = 0; i < total; i++) b[i] = v[s->rhs[i]];
-  for (uint32_t k = 0; k < s->nfilled; k++) {
-    uint32_t i = s->filled[k] / n, j = s->filled[k] % n;
-    Real x = v[s->matrix[s->filled[k]]];
+  for (uint32_t k = 0; k < s->list.n; k++) {
+    uint32_t i = s->list.at[k].at / n, j = s->list.at[k].at % n;
+    Real x = v[s->list.at[k].x];
     sparse_put(p->arena, &system, i, j, x);
     if (i >= n) sparse_put(p->arena, &system, j, i, -x);
   }

@@ -26,34 +26,54 @@ static void substitution(uint32_t n, const uint32_t *from, uint32_t begin, Ops *
   }
 }
 
-static uint32_t first_entry(const Slot *x, uint32_t n) {
+/* Elements of one row of the system, by rising column. */
+typedef struct {
+  const SolveElement *at;
+  uint32_t n, before; /* before: place of its column 0 */
+} Row;
+
+/* The row of k from element *e on; *e := the first element of the next row. */
+static Row next_row(const Solve *k, uint32_t row, uint32_t *e) {
+  Row r = {k->list.at + *e, 0, row*k->n};
+  for (; *e < k->list.n && k->list.at[*e].at - r.before < k->n; ++*e) r.n++;
+  return r;
+}
+
+/* First column of the row that is not zero, n at most. */
+static uint32_t first_entry(const Row *r, uint32_t n) {
   uint32_t i = 0;
-  while (i < n && !x[i]) i++;
-  return i;
+  while (i < r->n && !r->at[i].x) i++;
+  return i < r->n && r->at[i].at - r->before < n ? r->at[i].at - r->before : n;
 }
 
 /* One past the last nonzero element of L^-1 x. */
-static uint32_t end_of_solution(uint32_t n, const uint32_t *from, const Slot *x) {
+static uint32_t end_of_solution(uint32_t n, const uint32_t *from, const Row *x) {
   uint32_t end = 0;
-  for (uint32_t i = 0; i < n; i++)
-    if (x[i] || from[i] < end) end = i + 1;
+  for (uint32_t i = 0, e = 0; i < n; i++) {
+    int is_listed = e < x->n && x->at[e].at - x->before == i;
+    if ((is_listed && x->at[e].x) || from[i] < end) end = i + 1;
+    e += (uint32_t)is_listed;
+  }
   return end;
 }
 
 /* Schur's complement, as in lag_schur, line by line. Large banded systems go by lag_banded instead; they are counted
  * here too, though it takes about as many operations where M is diagonal, and fewer where it is not. */
 static Ops by_complement(Arena *a, const Solve *k) {
-  uint32_t n = k->n, m = k->m;
-  const Slot *M = k->matrix, *A = k->matrix + (size_t)n*n;
+  uint32_t n = k->n, m = k->m, e = 0;
   uint32_t *from = ARENA_ARRAY(a, uint32_t, n), *begin = ARENA_ARRAY(a, uint32_t, m),
            *end = ARENA_ARRAY(a, uint32_t, m), *row = ARENA_ARRAY(a, uint32_t, m);
   Ops c = {0};
-  for (uint32_t i = 0; i < n; i++) from[i] = first_entry(M + (size_t)i*n, i);
+  for (uint32_t i = 0; i < n; i++) {
+    Row r = next_row(k, i, &e);
+    from[i] = first_entry(&r, i);
+  }
   cholesky(n, from, &c);
   for (uint32_t j = 0; j < m; j++) {
-    begin[j] = first_entry(A + (size_t)j*n, n);
+    Row r = next_row(k, n + j, &e);
+    begin[j] = first_entry(&r, n);
     substitution(n, from, begin[j], &c);
-    end[j] = end_of_solution(n, from, A + (size_t)j*n);
+    end[j] = end_of_solution(n, from, &r);
     row[j] = j;
     for (uint32_t i = j + 1; i-- > 0;) {
       uint32_t both = span(later(begin[j], begin[i]), end[j] < end[i] ? end[j] : end[i]);
@@ -78,12 +98,12 @@ static Ops by_complement(Arena *a, const Solve *k) {
 static OpCount by_pivoting(const Solve *k) {
   OpCount c = {.div = k->n};
   uint64_t below = 0, above = 0;
-  for (uint64_t i = 0; i < k->n; i++)
-    for (uint64_t j = 0; j < k->n; j++) {
-      if (!k->matrix[i*k->n + j]) continue;
-      if (i > j + below) below = i - j;
-      if (j > i + above) above = j - i;
-    }
+  for (uint32_t e = 0; e < k->list.n; e++) {
+    uint64_t i = k->list.at[e].at / k->n, j = k->list.at[e].at % k->n;
+    if (!k->list.at[e].x) continue;
+    if (i > j + below) below = i - j;
+    if (j > i + above) above = j - i;
+  }
   for (uint64_t left = k->n; left-- > 0;) {
     uint64_t rows = left < below ? left : below, columns = left < below + above ? left : below + above;
     c.mul += rows*columns + rows + columns;

@@ -14,12 +14,12 @@ enum { STRAIGHT_OPS_A_VARIABLE = 100 };
 typedef struct {
   uint32_t n;
   uint32_t *at; /* [n] its coordinates */
-  Slot *M;      /* [n*n], lower triangle filled */
+  SolveElements list; /* M's lower triangle, and the rows of A behind M */
   Slot *f;
   Slot divisor; /* n == 2: the determinant */
   uint32_t m;   /* constraints on these coordinates, */
   uint32_t *rows; /* [m] their numbers */
-  Slot *A, *g;  /* [m*n], [m] */
+  Slot *g;      /* [m] */
 } Block;
 
 /* Right-hand sides: f[n] (0: zero), and g[nrows] of the first nrows constraints. factor[nrows]: of rows of A, 0: 1;
@@ -93,10 +93,8 @@ static BlockLayout make_layout(Lower *l, const RightHandSides *s) {
     Block *b = &y.blocks[k];
     b->at = ARENA_ARRAY(a, uint32_t, b->n);
     b->f = ARENA_ARRAY(a, Slot, b->n);
-    b->M = ARENA_ARRAY(a, Slot, (size_t)b->n * b->n);
     if (!b->m) continue;
     b->rows = ARENA_ARRAY(a, uint32_t, b->m);
-    b->A = ARENA_ARRAY(a, Slot, (size_t)b->m * b->n);
     b->g = ARENA_ARRAY(a, Slot, b->m);
   }
   return y;
@@ -108,7 +106,9 @@ static void fill_constraints(Lower *l, const RightHandSides *s, const BlockLayou
     uint32_t row = A->at[k].row;
     Block *b = &y->blocks[y->row_block[row]];
     Slot entry = lower_slot(l, A->at[k].e), factor = s->factor ? s->factor[row] : 0;
-    b->A[y->row_place[row] * b->n + y->place[A->at[k].col]] = factor ? prog_op(l->p, IR_MUL, entry, factor) : entry;
+    if (factor) entry = prog_op(l->p, IR_MUL, entry, factor);
+    uint32_t at = (b->n + y->row_place[row]) * b->n + y->place[A->at[k].col];
+    vec_push(l->p->arena, &b->list, ((SolveElement){at, entry}));
     b->rows[y->row_place[row]] = row;
     b->g[y->row_place[row]] = s->g[row];
   }
@@ -123,7 +123,7 @@ static uint32_t make_blocks(Lower *l, const RightHandSides *s, Block **blocks) {
     Slot slot = lower_slot(l, x->e);
     lower_name(l, slot, "M", x->row, x->col);
     uint32_t i = y.place[x->row], j = y.place[x->col];
-    b->M[i > j ? i * b->n + j : j * b->n + i] = slot;
+    vec_push(l->p->arena, &b->list, ((SolveElement){i > j ? i * b->n + j : j * b->n + i, slot}));
   }
   for (uint32_t i = 0; i < e->n; i++) {
     Block *b = &y.blocks[y.block[i]];
@@ -132,6 +132,7 @@ static uint32_t make_blocks(Lower *l, const RightHandSides *s, Block **blocks) {
     if (s->f[i]) lower_name(l, s->f[i], "f", i, UINT32_MAX);
   }
   fill_constraints(l, s, &y);
+  for (uint32_t k = 0; k < y.n; k++) solve_sort(&y.blocks[k].list);
   *blocks = y.blocks;
   return y.n;
 }
@@ -140,14 +141,16 @@ static uint32_t make_blocks(Lower *l, const RightHandSides *s, Block **blocks) {
 
 static void solve_one(Lower *l, const Block *b, Slot *x) {
   Expr M = eqns_mass(l->e, b->at[0], b->at[0]);
-  if (expr_sign(l->g, M) != SIGN_POSITIVE) lower_pivot(l, b->M[0], 0);
-  x[0] = op(l, IR_DIV, b->f[0], b->M[0]);
+  Slot divisor = solve_element(&b->list, 0);
+  if (expr_sign(l->g, M) != SIGN_POSITIVE) lower_pivot(l, divisor, 0);
+  x[0] = op(l, IR_DIV, b->f[0], divisor);
 }
 
 /* Cramer's rule for two coordinates whose mass matrix may be indefinite (L = x'*y'). It needs no pivoting, and for 2
  * x 2 is forward stable (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 1.10.1). */
 static void solve_two(Lower *l, Block *b, Slot *x) {
-  Slot m11 = b->M[0], m12 = b->M[2], m22 = b->M[3];
+  const SolveElements *M = &b->list;
+  Slot m11 = solve_element(M, 0), m12 = solve_element(M, 2), m22 = solve_element(M, 3);
   Slot square = op(l, IR_MUL, m11, m22);
   Slot det = prog_sub_product(l->p, square, m12, m12);
   prog_name(l->p, det, "det_M");
@@ -163,12 +166,9 @@ static void solve_two(Lower *l, Block *b, Slot *x) {
 static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
   Arena *a = l->p->arena;
   size_t n = b->n, m = b->m;
-  Slot *full = ARENA_ARRAY(a, Slot, (n + m) * n), *rhs = ARENA_ARRAY(a, Slot, n + m);
-  for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < n; j++) full[i * n + j] = i >= j ? b->M[i * n + j] : b->M[j * n + i];
-  for (size_t k = 0; k < m * n; k++) full[n * n + k] = b->A[k];
+  Slot *rhs = ARENA_ARRAY(a, Slot, n + m);
   for (size_t i = 0; i < n + m; i++) rhs[i] = i < n ? b->f[i] : b->g[i - n];
-  Solve k = {.n = b->n, .m = b->m, .coarse = coarse, .matrix = full, .rhs = rhs};
+  Solve k = {.n = b->n, .m = b->m, .coarse = coarse, .rhs = rhs, .list = b->list};
   prog_solve(l->p, k, x);
 }
 
@@ -204,7 +204,8 @@ static void keep_factors(Lower *l, const Block *blocks, uint32_t n, Slot *x) {
   for (uint32_t k = 0; k < n; k++) {
     const Block *b = &blocks[k];
     if (is_empty(b)) continue; /* the solution of an empty block is 0 to all orders */
-    FactorBlock kept = {.n = b->n, .at = b->at, .M = b->M, .divisor = b->n == 2 ? b->divisor : b->M[0]};
+    Slot divisor = b->n == 2 ? b->divisor : solve_element(&b->list, 0);
+    FactorBlock kept = {.n = b->n, .at = b->at, .M = b->list, .divisor = divisor};
     vec_push(l->p->arena, &f->blocks, kept);
   }
   l->x = x;

@@ -246,22 +246,24 @@ static Slot load_weight(Lower *l, uint32_t i) {
  * coordinates, else by one elimination. */
 static void solve_weights(Lower *l, const Slot *x, Slot *w) {
   const Eqns *e = l->e;
-  size_t n = e->n;
-  Slot *M = ARENA_ARRAY(l->p->arena, Slot, n * n + 1);
+  uint32_t n = e->n;
+  SolveElements M = {0};
   int diagonal = 1;
   for (uint32_t k = 0; k < e->mass.n; k++) {
-    size_t i = e->mass.at[k].row, j = e->mass.at[k].col;
-    M[i * n + j] = M[j * n + i] = lower_slot(l, e->mass.at[k].e);
+    uint32_t i = e->mass.at[k].row, j = e->mass.at[k].col;
+    vec_push(l->p->arena, &M, ((SolveElement){i * n + j, lower_slot(l, e->mass.at[k].e)}));
     diagonal &= i == j;
   }
-  for (uint32_t i = 0; i < n && diagonal; i++) w[i] = op(l, IR_DIV, x[i], M[i * n + i]);
+  for (uint32_t i = 0, k = 0; i < n && diagonal; i++)
+    w[i] = op(l, IR_DIV, x[i], k < M.n && M.at[k].at == i * n + i ? M.at[k++].x : 0);
   if (!diagonal && n == 2) {
-    Slot square = op(l, IR_MUL, M[0], M[3]), det = prog_sub_product(l->p, square, M[1], M[1]);
+    Slot own[2] = {solve_element(&M, 0), solve_element(&M, 3)}, both = solve_element(&M, 2);
+    Slot square = op(l, IR_MUL, own[0], own[1]), det = prog_sub_product(l->p, square, both, both);
     for (uint32_t i = 0; i < 2; i++) {
-      Slot top = op(l, IR_MUL, x[i], M[3 - 3 * i]), less = prog_sub_product(l->p, top, M[1], x[1 - i]);
+      Slot top = op(l, IR_MUL, x[i], own[1 - i]), less = prog_sub_product(l->p, top, both, x[1 - i]);
       w[i] = op(l, IR_DIV, less, det);
     }
-  } else if (!diagonal) prog_solve(l->p, (Solve){.n = e->n, .matrix = M, .rhs = x}, w);
+  } else if (!diagonal) prog_solve(l->p, (Solve){.n = e->n, .rhs = x, .list = M}, w);
 }
 
 /* Sums of derivatives by (q, q', z), by inputs and parameters; 0: none. */

@@ -279,9 +279,10 @@ static void set_adjoints(ModelSeries *w) {
 
 static Slot seen_slot(ModelSeries *w, Slot s) { return series_constant(&w->m, w->zero[s]); }
 
-static const Slot *seen_slots(ModelSeries *w, const Slot *s, uint32_t n) {
-  Slot *to = ARENA_ARRAY(w->m.arena, Slot, n + 1);
-  for (uint32_t i = 0; i < n; i++) to[i] = seen_slot(w, s[i]);
+static SolveElements seen_elements(ModelSeries *w, const SolveElements *s) {
+  SolveElements to = {0};
+  for (uint32_t k = 0; k < s->n; k++)
+    vec_push(w->m.arena, &to, ((SolveElement){s->at[k].at, seen_slot(w, s->at[k].x)}));
   return to;
 }
 
@@ -308,7 +309,7 @@ static FactorRecord factors_in_next(ModelSeries *w) {
   for (uint32_t k = 0; k < f->blocks.n; k++) {
     FactorBlock b = f->blocks.at[k];
     if (b.n < 3) inverse[k] = inverse_of(&w->m, w->zero[b.divisor]);
-    if (b.n >= 2) b.M = seen_slots(w, b.M, b.n * b.n);
+    if (b.n >= 2) b.M = seen_elements(w, &b.M);
     vec_push(w->m.arena, &seen.blocks, b);
   }
   return seen;

@@ -28,7 +28,7 @@ static Need find_needed(SeriesBuilder *m) {
   for (uint32_t k = 0; k < p->stores.n; k++) need(&n, p->stores.at[k].slot);
   for (uint32_t k = 0; k < p->solves.n; k++) {
     for (uint32_t i = 0; i < solve_unknowns(&p->solves.at[k]); i++) need(&n, p->solves.at[k].rhs[i]);
-    for (uint32_t i = 0; i < solve_elements(&p->solves.at[k]); i++) need(&n, p->solves.at[k].matrix[i]);
+    for (uint32_t i = 0; i < p->solves.at[k].list.n; i++) need(&n, p->solves.at[k].list.at[i].x);
   }
   while (n.open.n) {
     const Ins *i = &p->ins.at[n.open.at[--n.open.n]];

@@ -122,6 +122,45 @@ static void test_without_mass(void **state) {
       }
 }
 
+/* Scales by lists of elements are those of the full matrices: random sparse M and A of sizes far apart, some
+ * coordinates without inertia. */
+static void test_scales(void **state) {
+  (void)state;
+  enum { n = 12, m = 4, ROWS = m + n, ALL = ROWS * n };
+  for (unsigned turn = 0, seed = 1; turn < 200; turn++) {
+    double x[ROWS][n] = {{0}}, size[ALL], few[ALL], top[ROWS], scale[ROWS], listed[ROWS];
+    int first[ROWS + 1], col[ALL], row[ALL], diag[n], down[n + 1], at[ALL], count = 0, below = 0;
+    for (int k = 0; k < ROWS; k++)
+      for (int j = 0; j < n; j++) {
+        seed = seed * 1103515245u + 12345u;
+        unsigned die = seed >> 16;
+        double value = die % 5 ? 0 : ldexp(1, (int)(die / 5 % 80) - 40);
+        if (k < m || j <= k - m) x[k][j] = value;
+        if (k >= m && j < k - m) x[m + j][k - m] = value;
+      }
+    for (int k = 0; k < ROWS; k++) {
+      first[k] = count;
+      for (int j = 0; j < n; j++) {
+        size[k * n + j] = lag_element_size(x[k][j]);
+        if (x[k][j] == 0 && j != k - m) continue;
+        if (j == k - m) diag[j] = count;
+        row[count] = k, col[count] = j, few[count++] = size[k * n + j];
+      }
+    }
+    first[ROWS] = count;
+    for (int j = 0; j < n; j++) {
+      down[j] = below;
+      for (int e = 0; e < first[m]; e++)
+        if (col[e] == j) at[below++] = e;
+    }
+    down[n] = below;
+    const lag_elements all = {n, m, 0, 0, 0, 0, 0, 0}, some = {n, m, first, col, row, diag, down, at};
+    lag_scales(&all, scale, top, size);
+    lag_scales(&some, listed, top, few);
+    assert_memory_equal(scale, listed, sizeof scale);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_band),
@@ -129,6 +168,7 @@ int main(void) {
       cmocka_unit_test(test_few_closed),
       cmocka_unit_test(test_dependent),
       cmocka_unit_test(test_without_mass),
+      cmocka_unit_test(test_scales),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
