@@ -26,7 +26,7 @@ derivatives() { header "$1" gsl,cvode,arkode,ida && program derivatives; }
 motions() { header "$1" gsl,cvode,arkode,ida && shift && program motions "$@"; }
 run_end() { "$LAGC" run "$@" | awk '/^steps/ { exit } on { print $2 } /^reached/ { on = 1 }'; }
 
-models=$(grep -LE '^ *contact|^ *kick |^ *constraint .* while ' models/*.lag)
+models=$(grep -LE '^ *contact|^ *kick |^ *guide .* friction |^ *friction .*lambda|^ *constraint .* while ' models/*.lag)
 
 # ---- GSL and SUNDIALS
 # x'' + 4 x = cos(3 t)/4 + t/2 and z' = x - z, from x = 1; at t = 4
