@@ -283,7 +283,7 @@ int main(int argc, char **argv) {
 }
 EOF
 } >"$TMP/tree.c"
-"$CC" -O2 -w -I"$INC" "$TMP/tree.c" "$LIBLAG" -lm -lpthread -o "$TMP/tree" || exit 1
+$CC -O2 -w -I"$INC" "$TMP/tree.c" $LIBLAG $LIBS -o "$TMP/tree" || exit 1
 calls() { "$TMP/tree" --method verlet --step 0.01 "$@" 2>&1 >"$TMP/report" | sed -n 's/^calls //p'; }
 alone=$(calls --until 0.1 --quiet)
 check "a run of 10 steps by a tree takes few evaluations besides its steps" test "$alone" -le 65

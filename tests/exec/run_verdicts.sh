@@ -25,6 +25,13 @@ sentence() {
 # same WHAT A B
 same() { [ "$2" = "$3" ] || echo "$1: $2 | $3"; }
 
+# cyclic FILE: the lines on cyclic coordinates, one for each member of a family
+cyclic() {
+  awk '/^cyclic/ { if (!match($0, /  for [a-z] in [0-9]+\.\.[0-9]+$/)) { print; next }
+    rest = substr($0, 1, RSTART - 1); split(substr($0, RSTART + 11), end, "[.][.]")
+    for (k = end[1] + 0; k <= end[2] + 0; k++) { line = rest; gsub(/\[[a-z]\]/, "[" k "]", line); print line } }' "$1"
+}
+
 # symmetries: those that noether lists, against check
 symmetries() {
   lagc noether "$m" "$s" >"$o/noether" 2>/dev/null
@@ -32,8 +39,8 @@ symmetries() {
   same "check and noether" "$(sentence "$o/check")" "$(sentence "$o/noether")"
   same "check and noether's JSON" "$said" "$(sed -n '1s/.*"energy": "\([a-z ]*\)".*/\1/p' "$o/json" | sed 's/not decided/undecided/')"
   same "cyclic in check and noether" "$(grep '^cyclic' "$o/check")" "$(grep '^cyclic' "$o/noether")"
-  same "cyclic in check and JSON" "$(sed -n 's/^cyclic coordinate: \([^;]*\);.*/\1/p' "$o/check" | paste -sd ' ' -)" "$(sed -n '1s/.*"cyclic": \[\(.*\)\],$/\1/p' "$o/json" | tr -d '",')"
-  sed -n 's/^cyclic coordinate: \([^;]*\);.* is conserved.*/\1/p' "$o/check" | while read -r x; do
+  same "cyclic in check and JSON" "$(cyclic "$o/check" | sed -n 's/^cyclic coordinate: \([^;]*\);.*/\1/p' | paste -sd ' ' -)" "$(sed -n '1s/.*"cyclic": \[\(.*\)\],$/\1/p' "$o/json" | tr -d '",')"
+  cyclic "$o/check" | sed -n 's/^cyclic coordinate: \([^;]*\);.* is conserved.*/\1/p' | while read -r x; do
     grep -F "\"delta\": {\"$x\": \"1\"}, \"delta_t\": \"0\"" "$o/json" | grep '"is": "changes"' | sed "s/^/p_$x conserved in check, not in noether: /"
   done
 }
