@@ -254,7 +254,10 @@ static int family_components(const Eval *ev, struct Quantified *q, Value *r) {
   for (uint32_t c = 0; c < n; c++) {
     for (int k = 0; k < REPRESENTATIVES; k++)
       turned[k][c] = q->has_lets ? expr_expand_defs(b->g, q->body[k].at[c]) : q->body[k].at[c];
-    if (!find_arguments(&a, turned[0][c])) return q->why = a.why, 0;
+    Expr both[] = {turned[0][c], turned[1][c]};
+    quantified_guard_diagonal(ev, q, q->body[REPRESENTATIVES].at[c], both);
+    turned[0][c] = both[0], turned[1][c] = both[1];
+    if (!find_arguments(&a, both[0])) return q->why = a.why, 0;
   }
   for (uint32_t c = 0; c < n; c++)
     if (!same_for_both(&a, turned[0][c], turned[1][c])) return 0;
@@ -273,9 +276,9 @@ static Expr component_sum(Eval *ev, struct Quantified *q, uint32_t c) {
   const Value *body = q->body, *whole = q->whole;
   uint32_t n = component_count(q->inner ? &body[0] : &whole[0]);
   if (n != component_count(&whole[0])) return 0; /* the vector inside became a number */
-  Expr turned[REPRESENTATIVES];
+  Expr turned[PASSES] = {0};
   for (int k = 0; k < REPRESENTATIVES && !q->inner; k++) turned[k] = whole[k].at[c];
-  for (int k = 0; k < REPRESENTATIVES && q->inner; k++) {
+  for (int k = 0; k < q->passes && q->inner; k++) {
     Expr factor = expr_diff(g, whole[k].at[c], q->inside[c]);
     if (expr_contains_sym(g, factor, q->inside[c])) {
       q->why = "it is not linear in the sum inside";
@@ -285,7 +288,8 @@ static Expr component_sum(Eval *ev, struct Quantified *q, uint32_t c) {
     Expr zero = expr_int(g, 0), rest = expr_replace(g, whole[k].at[c], &q->inside[c], &zero, 1);
     q->beside |= !expr_is_zero(g, rest);
   }
-  for (int k = 0; k < REPRESENTATIVES && q->has_lets; k++) turned[k] = expr_expand_defs(g, turned[k]);
+  for (int k = 0; k < q->passes && q->has_lets; k++) turned[k] = expr_expand_defs(g, turned[k]);
+  quantified_guard_diagonal(ev, q, turned[REPRESENTATIVES], turned);
   q->why = "its terms differ by more than the members that they read";
   if ((q->beside && n > 1) || !find_arguments(&a, turned[0]) || !same_for_both(&a, turned[0], turned[1])) {
     if (a.why) q->why = a.why;

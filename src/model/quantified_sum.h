@@ -88,5 +88,9 @@ const AstFar *quantified_far_sum(const Ast *ast, AstId sum);
 int quantified_is_long(const Builder *b, uint64_t turns);
 int quantified_write_out(const Eval *ev, const struct Quantified *q, uint64_t turns);
 
+/* sum_diagonal.c: puts a condition around the terms of both representatives, if they have no derivative for i = j,
+ * where their value is the number `same`; 0, or no number: leaves them. */
+void quantified_guard_diagonal(const Eval *ev, const struct Quantified *q, Expr same, Expr *turned);
+
 /* In rows and turns: i = lo + row, j = from(lo) + turn. */
 Subscript quantified_turns(const struct Quantified *q, Affine x);

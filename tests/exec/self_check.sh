@@ -53,6 +53,7 @@ kinetic = m/2*(x'^2 + y'^2 + z'^2)
 potential = m*g*z
 scene s { start x = 40, y = 30, x' = 0.3, y' = -0.7; span 5; output x'', y'' every 0.1 }"
 check "steep: outputs of accelerations" agrees "$bead"
+check "series of long sums, with several scenes" "$LAGC" build models/kuramoto.lag --method taylor --bytes -o "$TMP/kuramoto"
 check "steep: Taylor coefficients" agrees "$bead" --method taylor
 check "steep: two catenaries" agrees "param m = 0.1, a = 1, b = 2, g = 9.81
 let z = a*cosh(x/a) + b*cosh(y/b)

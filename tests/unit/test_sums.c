@@ -84,6 +84,10 @@ static const char *const texts[] = {
     /* a range that moves and grows; the first two rows are empty */
     "const N = %d\ncoord x[2*N]\nlagrangian = sum(i in 1..2*N, x[i]'^2/2) -\n"
     "  sum(i in 1..N, sum(j in i+1..2*i-2, cos(x[i] - 2*x[j])))",
+    /* distances, which have no derivative for i = j, in sums over full rows; exp of one is 1 there */
+    BODIES "potential = 1/2*sum(i in 1..N, e[i]*sum(j in 1..N, e[j]*norm(r[i] - r[j]))) +\n"
+    "  sum(i in 1..N, sum(j in 1..N, exp(-norm(r[i] - r[j]))))\n"
+    "for i in 1..N { force r[i] = -sum(j in 1..N, norm(r[i] - r[j])*(r[i] - r[j] + r[j]')) }",
     /* forces of families: full rows, rows that grow from nothing, a sum that is the same for all, indices as numbers */
     "const N = %d\ncoord x[N], y[N]\nparam k[N] = 1 > 0, c = 0.2\n"
     "kinetic = sum(i in 1..N, k[i]*x[i]'^2/2 + y[i]'^2)\n"
