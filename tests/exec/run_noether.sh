@@ -260,7 +260,7 @@ check "60 free rods" rods
 # sums over pairs of a square: sin(y[j] - y[i])*y[i]*y[j] is equal and opposite, and 1 + 0.001*y[j] beside the other is not
 cat >"$TMP/opposite.lag" <<'END'
 model opposite
-const N = 60
+const N = 100
 coord x[N], y[N]
 lagrangian = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2)
 for i in 1..N {
